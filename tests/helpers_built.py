@@ -17,7 +17,7 @@ from gearcam.base.errors import GearcamError
 from gearcam.designs import Design
 from gearcam.designs.design import hash_of
 
-_KEPT: Final = 96
+_KEPT: Final = 200
 """Results kept at a time, those used last."""
 
 _results: OrderedDict[tuple[str, bytes], Any] = OrderedDict()

@@ -170,6 +170,7 @@ def test_the_smallest_cam_is_at_least_as_small_as_every_one_of_the_grid(
     assert least - step < family.of(found)[0] <= least
 
 
+@pytest.mark.slow
 def test_the_smallest_cam_is_that_of_its_solved_sizes(tmp_path: Path) -> None:
     text = CAMS.text.replace('angle_deg = "rest"', "angle_deg = 80")
     text = text.replace("angle_deg = 120", 'angle_deg = "rest"')

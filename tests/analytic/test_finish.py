@@ -46,7 +46,7 @@ def finished(made: GearPairResult, number: int, clearance: float, rounding: floa
 @pytest.mark.parametrize(
     ("clearance", "rounding"),
     [
-        (0.05, 0.0),
+        pytest.param(0.05, 0.0, marks=pytest.mark.slow),
         pytest.param(0.0, 0.1, marks=pytest.mark.slow),
         pytest.param(0.03, 0.25, marks=pytest.mark.slow),
         (0.02, 0.45),

@@ -126,7 +126,7 @@ LAWS = [*ACCELERATIONS, "constant-velocity", "3-4-5-6"]
 
 
 @pytest.mark.parametrize(
-    ("law", "noise"), few([(law, noise) for noise in (1e-3, 1e-2, 0.1) for law in LAWS], 6)
+    ("law", "noise"), few([(law, noise) for noise in (1e-3, 1e-2, 0.1) for law in LAWS], 11)
 )
 def test_every_law_is_found_or_named(law: str, noise: float) -> None:
     moves = double_dwell(law)

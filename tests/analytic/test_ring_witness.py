@@ -128,6 +128,7 @@ def test_a_ring_off_by_a_micrometre_is_seen() -> None:
     assert sweep.farthest(moved, cut("odd", 20, STEPS)) > 5e-4
 
 
+@pytest.mark.slow
 def test_a_ring_turned_over_is_seen() -> None:
     """The control of the asymmetric one: its mirror image has other teeth."""
     over = points("odd", 20, Curve.FLANK, Curve.FILLET) * [1.0, -1.0]

@@ -27,7 +27,7 @@ def cut_and_points(name: str, k: int) -> tuple[Any, np.ndarray]:
     return cut, sweep.inside(cut_points(name, 1), rolling, 1, k, basic)
 
 
-@pytest.mark.parametrize("name", ["two phases", "three phases"])
+@pytest.mark.parametrize("name", few(["three phases", "two phases"]))
 def test_the_cutter_is_a_pinion_that_fits_the_concave_part(name: str) -> None:
     concave = -float(toothings(name)[0].track.curvature_extremes[1].min())
     assert toothings(name)[0].cutter.kind == "pinion"
@@ -41,7 +41,7 @@ def test_the_cutter_is_a_pinion_that_fits_the_concave_part(name: str) -> None:
     ("name", "k"),
     few(
         ((name, k) for name in ("two phases", "three phases") for k in (1, 9, 15, 16, 17, 18, 24)),
-        3,
+        7,
     ),
 )
 def test_flanks_and_fillets_agree(name: str, k: int) -> None:

@@ -67,7 +67,7 @@ def test_closure_gives_the_third_ratio() -> None:
     assert printed(oracle.closing_ratio([160, 110, 90], [1.62, 0.4, None, 1.62]), "1.035")
 
 
-@pytest.mark.parametrize(("e", "text"), [(0.3, "41.9606757804"), (0.5, "43.8870922799")])
+@pytest.mark.parametrize(("e", "text"), few([(0.3, "41.9606757804"), (0.5, "43.8870922799")]))
 def test_ellipse(e: float, text: str) -> None:
     pair = oracle.with_module(laws.ellipse(e), 1, 41)
     assert printed(pair.distance, text)
@@ -80,7 +80,7 @@ def test_ellipse(e: float, text: str) -> None:
     assert abs(1 / pair.largest_curvature(1) - a * (1 - e_exact**2)) < 1e-20
 
 
-@pytest.mark.parametrize(("e", "text"), [(0.0, "17.097"), (0.3, "18.358"), (0.5, "21.297")])
+@pytest.mark.parametrize(("e", "text"), few([(0.3, "18.358"), (0.0, "17.097"), (0.5, "21.297")], 3))
 def test_fewest_teeth_of_an_ellipse(e: float, text: str) -> None:
     pair = oracle.Pair(laws.ellipse(e), mp.mpf(2))
     assert printed(pair.length * pair.largest_curvature(1) / (mp.pi * UNDERCUT), text)

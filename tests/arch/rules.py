@@ -8,15 +8,11 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = ROOT / "src" / "gearcam"
-HEAVY = frozenset(
-    {"scipy", "trimesh", "manifold3d", "ezdxf", "rich", "lxml", "networkx", "plotly", "jinja2"}
-)
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
@@ -34,61 +30,7 @@ def _tree(text: str, name: str) -> ast.Module:
     return ast.parse(text, filename=name)
 
 
-# --- manners ------------------------------------------------------------------------------------
-
-
-def manner_faults(path: Path) -> list[str]:
-    """Star imports, asserts as checks of input, prints and exits outside the command line.
-
-    A star may tell type checkers of names: they read the list ``__all__``.
-    """
-    faults, tree = [], parse(path)
-    told = {
-        id(node)
-        for block in ast.walk(tree)
-        if isinstance(block, ast.If) and ast.unparse(block.test) == "TYPE_CHECKING"
-        for node in block.body
-    }
-    for node in ast.walk(tree):
-        read = id(node) not in told
-        if read and isinstance(node, ast.ImportFrom) and node.names[0].name == "*":
-            faults.append(f"{path.name}:{node.lineno} star import")
-        if isinstance(node, ast.Assert):
-            faults.append(f"{path.name}:{node.lineno} assert")
-        if isinstance(node, ast.Call) and path.name != "console.py":
-            last = getattr(node.func, "id", getattr(node.func, "attr", ""))
-            name = ast.unparse(node.func) if last in {"print", "exit", "quit"} else ""
-            if name in {"print", "exit", "quit", "sys.exit"} and path.name != "__main__.py":
-                faults.append(f"{path.name}:{node.lineno} {name}()")
-    return faults
-
-
-def heavy_import_faults(path: Path) -> list[str]:
-    """Slow libraries imported when the module is, not when they are needed."""
-    faults = []
-    for node in _loaded_at_import(parse(path).body):
-        names = (
-            [node.module or ""]
-            if isinstance(node, ast.ImportFrom)
-            else [name.name for name in node.names]
-        )
-        faults += [
-            f"{path.name}:{node.lineno} imports {name} at the top"
-            for name in names
-            if name.split(".")[0] in HEAVY
-        ]
-    return faults
-
-
-def _loaded_at_import(body: list[ast.stmt]) -> Iterator[ast.Import | ast.ImportFrom]:
-    for node in body:
-        if isinstance(node, ast.Import | ast.ImportFrom):
-            yield node
-        elif isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
-            yield from _loaded_at_import(node.orelse)
-        elif not isinstance(node, Function):
-            for field in ("body", "orelse", "finalbody", "handlers"):
-                yield from _loaded_at_import(getattr(node, field, []))
+# --- imports -------------------------------------------------------------------------------------
 
 
 def imports_of(*paths: Path, root: Path) -> dict[str, set[str]]:
@@ -230,7 +172,12 @@ def _section(doc: str, title: str) -> str:
 
 
 def _named(word: str, text: str) -> bool:
-    return re.search(rf"(?<!\w){re.escape(word)}(?!\w)", text) is not None
+    return word in _words(text)
+
+
+@cache
+def _words(text: str) -> frozenset[str]:
+    return frozenset(re.findall(r"\w+", text))
 
 
 def _raised(node: ast.AST) -> set[str]:

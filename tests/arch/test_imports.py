@@ -121,29 +121,6 @@ def test_a_wrong_import_is_caught(
     assert re.search(rf"gearcam\.{guilty} -> {what.partition('.optimize')[0]}\b", told), told
 
 
-def test_slow_libraries_are_imported_where_they_are_needed() -> None:
-    files = rules.python_files(rules.SOURCE)
-    assert [fault for path in files for fault in rules.heavy_import_faults(path)] == []
-
-
-@pytest.mark.parametrize(
-    ("code", "caught"),
-    [
-        ("import ezdxf\n", True),
-        ("from scipy.optimize import brentq\n", True),
-        ("try:\n    import trimesh\nexcept ImportError:\n    trimesh = 0\n", True),
-        ("class A:\n    import manifold3d\n", True),
-        ("def f():\n    import ezdxf\n", False),
-        ("if TYPE_CHECKING:\n    import ezdxf\n", False),
-        ("import numpy\n", False),
-    ],
-)
-def test_an_early_import_is_caught(tmp_path: Path, code: str, caught: bool) -> None:
-    sample = tmp_path / "sample.py"
-    sample.write_text(code)
-    assert bool(rules.heavy_import_faults(sample)) is caught
-
-
 def _foreign_to_witnesses(code: str) -> set[str]:
     """What a witness imports beside the standard library and what it may depend on."""
     names: set[str] = set()

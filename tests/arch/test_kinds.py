@@ -303,7 +303,11 @@ def test_a_refusal_of_a_nested_design_has_its_place() -> None:
 @pytest.mark.parametrize(
     ("changes", "key"),
     [
-        ({"law.eccentricity": 0.7, "pair.teeth": [12, 12]}, "drive.pair.pair.teeth"),  # more teeth
+        pytest.param(  # more teeth
+            {"law.eccentricity": 0.7, "pair.teeth": [12, 12]},
+            "drive.pair.pair.teeth",
+            marks=pytest.mark.slow,
+        ),
         pytest.param(  # a finding
             {"pair.teeth": [9, 9], "rack.addendum": 0.7},
             "drive.pair.pair.teeth",

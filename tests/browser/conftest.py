@@ -13,7 +13,7 @@ from selenium.webdriver import Chrome
 from selenium.webdriver.chrome.options import Options
 from selenium.webdriver.chrome.service import Service
 
-import gearcam
+import helpers_built
 from gearcam.report.page import document, page
 from gearcam.results.result import Result
 from helpers_pairs import PROFILES
@@ -51,7 +51,7 @@ def browser() -> Iterator[Chrome]:
 @pytest.fixture(scope="session")
 def built() -> Callable[[str], Result]:
     """What builds a profile by its name, once."""
-    return cache(lambda name: gearcam.build(gearcam.load(PROFILES / f"{name}.toml")))
+    return lambda name: helpers_built.built(PROFILES / f"{name}.toml")
 
 
 @pytest.fixture(scope="session")

@@ -202,6 +202,7 @@ def test_a_box_of_another_shape_is_drawn_before_it_is_shown(
     assert browser.execute_async_script(script) == [218, 308, "contain"]  # within the border
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [LAPTOP, PHONE])
 def test_remedies_stand_under_the_verdict_with_what_is_known_of_them(
     size: tuple[int, int], browser: Chrome, page_of: BuildOutput, built: Callable[[str], Any]
@@ -292,6 +293,7 @@ def test_paper_is_light_without_controls_and_leaves_no_trace(
         assert not browser.find_element(By.ID, name).is_displayed()
 
 
+@pytest.mark.slow
 def test_another_document_keeps_place_view_and_choices(
     browser: Chrome, page_of: BuildOutput
 ) -> None:

@@ -125,6 +125,7 @@ def test_names_do_not_cover_each_other_at_the_edge(browser: Chrome, page_of: Bui
                 assert beside or abs(one["y"] - other["y"]) > 9.0, (place, one, other)
 
 
+@pytest.mark.slow
 def test_the_place_is_told_with_the_name_of_the_output(
     browser: Chrome, page_of: BuildOutput
 ) -> None:

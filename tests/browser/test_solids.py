@@ -159,6 +159,7 @@ def test_wheels_follow_the_slider_by_the_poses_of_their_pictures(
         assert found["gear2"] == pytest.approx(turned(phi2, 180.0), abs=1e-6)
 
 
+@pytest.mark.slow
 def test_solids_that_were_folded_are_moved_when_they_are_unfolded(
     browser: Chrome, cam_page: Path
 ) -> None:
@@ -173,6 +174,7 @@ def test_solids_that_were_folded_are_moved_when_they_are_unfolded(
     assert placed(browser)["cam"] == pytest.approx(turned(90.0), abs=1e-6)
 
 
+@pytest.mark.slow
 def test_solids_stay_in_sight_at_all_places(browser: Chrome, solids_page: Path) -> None:
     """The wheels are not round: one that is in sight may leave it as it turns."""
     open_page(browser, solids_page, PHONE)
@@ -184,6 +186,7 @@ def test_solids_stay_in_sight_at_all_places(browser: Chrome, solids_page: Path) 
         assert -1.0 < low < high < 1.0
 
 
+@pytest.mark.slow
 def test_keys_turn_and_zoom(browser: Chrome, solids_page: Path) -> None:
     open_page(browser, solids_page)
     show(browser)
@@ -205,6 +208,7 @@ def test_keys_turn_and_zoom(browser: Chrome, solids_page: Path) -> None:
     assert places[0][1][0] > places[0][0][0]  # as if dragged to the left
 
 
+@pytest.mark.slow
 def test_paper_has_a_picture_of_what_is_seen(browser: Chrome, solids_page: Path) -> None:
     open_page(browser, solids_page)
     browser.execute_script("dispatchEvent(new Event('beforeprint'))")
@@ -258,6 +262,7 @@ def test_a_page_of_variants_is_drawn_and_moves(browser: Chrome, tmp_path: Path) 
     assert complaints(browser) == []
 
 
+@pytest.mark.slow
 def test_the_live_view_shows_the_solids_of_the_numbers_in_the_page(
     browser: Chrome, tmp_path: Path
 ) -> None:

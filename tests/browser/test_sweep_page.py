@@ -72,6 +72,7 @@ def test_all_charts_are_drawn_without_complaint(opened: Chrome) -> None:
     assert not opened.get_log("browser")
 
 
+@pytest.mark.slow
 def test_a_range_on_an_axis_keeps_its_variants(opened: Chrome) -> None:
     axes = opened.find_element(By.ID, "axes")
     opened.execute_script("arguments[0].scrollIntoView({block: 'center'})", axes)
@@ -91,6 +92,7 @@ def end(browser: Chrome, fact: str, word: str) -> WebElement:
     return browser.find_element(By.CSS_SELECTOR, f"[aria-label='{fact}, at {word}']")
 
 
+@pytest.mark.slow
 def test_the_ends_of_a_range_are_moved_by_keys(opened: Chrome) -> None:
     """Eccentricities are 0.05 to 0.5, and 3, which is refused: the axis is 2.95 long."""
     most, least = (end(opened, "law.eccentricity", word) for word in ("most", "least"))
@@ -152,6 +154,7 @@ def test_a_click_shows_a_design_file_that_makes_these_facts(
     assert f"gearcam build {BASE.name}_6.toml" in text(opened, "variant")
 
 
+@pytest.mark.slow
 def test_a_range_is_moved_and_all_are_kept_again(opened: Chrome) -> None:
     axes = opened.find_element(By.ID, "axes")
     opened.execute_script("arguments[0].scrollIntoView({block: 'center'})", axes)
@@ -242,6 +245,7 @@ def test_the_longest_name_is_cut(browser: Chrome, tmp_path: Path) -> None:
     assert gc.loads(written).name == "n" * 80 + "_123456"
 
 
+@pytest.mark.slow
 def test_a_choice_by_chance_has_all_values_of_a_grid(browser: Chrome, tmp_path: Path) -> None:
     made = [
         Built(number=k, values={"a": k // 10, "b": k % 10}, facts={"c": float(k)})
@@ -314,6 +318,7 @@ def test_it_is_read_on_a_phone_and_in_the_dark(
     assert 0 < last.rect["x"] - browser.execute_script("return scrollX") < PHONE[0]
 
 
+@pytest.mark.slow
 def test_a_hundred_thousand_variants_open(browser: Chrome, tmp_path: Path) -> None:
     made = [
         Built(number=k, values={"law.eccentricity": k / 1e5}, facts={"a": (k * 37 % 1000) / 7.0})

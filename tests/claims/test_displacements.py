@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import cache, partial
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 import pytest
@@ -42,21 +43,31 @@ def rows(tolerance: float | None = None) -> Displacement:
     return MotionTable(theta=theta, lift=lift, smoothing_tolerance=tolerance).program(DEFAULT)
 
 
-MOVING = [
-    pytest.param(rows(), id="rows"),
-    pytest.param(rows(0.01), id="rows, smoothed"),
-    pytest.param(MotionFormula(lift="4*(1 - cos(theta))**2").program(DEFAULT), id="formula"),
-    *(
-        pytest.param(claim.parameters.build(claim.lobes, DEFAULT), id=f"law {name}-{number}")
+MOVING: dict[str, Callable[[], Displacement]] = {
+    "rows": rows,
+    "rows, smoothed": lambda: rows(0.01),
+    "formula": lambda: MotionFormula(lift="4*(1 - cos(theta))**2").program(DEFAULT),
+    **{
+        f"law {name}-{number}": partial(claim.parameters.build, claim.lobes, DEFAULT)
         for name, claims in LAW_CLAIMS.items()
         for number, claim in enumerate(claims.values)
-    ),
-    *(
-        pytest.param(program(claim.parameters), id=f"program {name}-{number}")
+    },
+    **{
+        f"program {name}-{number}": partial(program, claim.parameters)
         for name, claims in MOTION_CLAIMS.items()
         for number, claim in enumerate(claims.values)
-    ),
-]
+    },
+}
+
+
+@cache
+def made(name: str) -> Displacement:
+    return MOVING[name]()
+
+
+@pytest.fixture(params=MOVING)
+def moving(request: pytest.FixtureRequest) -> Displacement:
+    return made(request.param)
 
 
 def inside(moving: Displacement, shares: Array) -> Array:
@@ -70,7 +81,6 @@ def largest(moving: Displacement, order: int) -> Array:
     return np.fmax(1.0, np.abs(moving.derivatives(places, order)).max(axis=1))
 
 
-@pytest.mark.parametrize("moving", MOVING)
 def test_each_derivative_is_the_slope_of_the_one_below(moving: Displacement) -> None:
     """Orders 1 to 4 against differences of the fourth order, and the shape is kept."""
     for low, high in pairwise(moving.knots):
@@ -86,7 +96,6 @@ def test_each_derivative_is_the_slope_of_the_one_below(moving: Displacement) -> 
             np.testing.assert_allclose(exact[order], slope, rtol=2e-8, atol=1e-10 * max(1.0, size))
 
 
-@pytest.mark.parametrize("moving", MOVING)
 def test_the_period_or_the_travel_closes(moving: Displacement) -> None:
     assert moving.knots[0] == 0.0
     assert moving.knots[-1] == pytest.approx(moving.period, rel=1e-15)
@@ -103,7 +112,6 @@ def test_the_period_or_the_travel_closes(moving: Displacement) -> None:
             np.testing.assert_allclose(found, expected, atol=1e-13 * size * moving.period * 30)
 
 
-@pytest.mark.parametrize("moving", MOVING)
 def test_derivatives_jump_at_the_knots_that_are_told_and_there_only(moving: Displacement) -> None:
     """Both sides of every knot, a little away from it; the ends of a closed one are one knot."""
     told = {jump.theta: jump for jump in moving.jumps}
@@ -124,8 +132,7 @@ def test_derivatives_jump_at_the_knots_that_are_told_and_there_only(moving: Disp
 
 
 def test_there_are_both_kinds_open_and_closed_with_and_without_jumps() -> None:
-    made: list[Any] = [param.values[0] for param in MOVING]
-    kinds = {(type(one).__name__, one.closed, bool(one.jumps)) for one in made}
+    kinds = {(type(one).__name__, one.closed, bool(one.jumps)) for one in map(made, MOVING)}
     assert kinds == {
         ("RatioLaw", True, True),
         ("RatioLaw", True, False),

@@ -47,7 +47,7 @@ def members(name: str, count: int) -> list[Any]:
     return made
 
 
-MEMBERS = [*CLAIMS, *(member for name in LAW_CLAIMS for member in members(name, 6))]
+MEMBERS = [*CLAIMS, *(member for name in LAW_CLAIMS for member in members(name, 3))]
 
 
 def built(claim: LawClaim) -> RatioLaw:

@@ -44,7 +44,7 @@ def slope(errors: list[float]) -> float:
     return -float(np.polyfit(np.log(STEPS), np.log(errors), 1)[0])
 
 
-@pytest.mark.parametrize(("name", "wheel", "spaces"), few(WHEELS))
+@pytest.mark.parametrize(("name", "wheel", "spaces"), few(WHEELS, 4))
 def test_difference_falls_with_the_square_of_the_step(
     name: str, wheel: Any, spaces: tuple[int, ...]
 ) -> None:

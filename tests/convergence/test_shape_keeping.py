@@ -44,7 +44,7 @@ def test_it_passes_through_the_points_with_two_derivatives(rise: float | None) -
         assert bends[-1] == pytest.approx(2 * powers[0, 2], abs=1e-9)
 
 
-@settings(max_examples=300, derandomize=True, database=None, deadline=None)
+@settings(max_examples=60, derandomize=True, database=None, deadline=None)
 @given(st.lists(st.floats(0.01, 10.0), min_size=6, max_size=20), st.data())
 def test_it_rises_where_the_points_rise(steps: list[float], data: st.DataObject) -> None:
     widths = data.draw(st.lists(st.floats(0.1, 3.0), min_size=len(steps), max_size=len(steps)))

@@ -35,7 +35,7 @@ def allowance(chord: float) -> float:
     return 4 * (4 / 3) * (2 * chord) * math.sqrt(2 * 2 * chord * 60.0)
 
 
-@pytest.mark.parametrize("name", NAILS)
+@pytest.mark.parametrize("name", few(NAILS))
 @pytest.mark.parametrize("step", few([4, 1]))
 def test_no_overlap_in_any_phase(name: str, step: int) -> None:
     made = profile(name, FINE)

@@ -169,7 +169,7 @@ def margin(case: Case) -> Callable[[Any], Any]:
     return face if exact.follower.flat else circle
 
 
-@pytest.mark.parametrize("name", few(UNDERCUT))
+@pytest.mark.parametrize("name", few(UNDERCUT, 3))
 def test_undercut_is_where_the_radius_changes_its_sign(name: str) -> None:
     """Sign changes of a fine scan, bisected to 1e-10 rad."""
     case = UNDERCUT[name]

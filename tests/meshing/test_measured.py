@@ -81,7 +81,7 @@ def test_whole_outlines_touch_at_the_lead_of_their_half_teeth(name: str) -> None
 
 @pytest.mark.parametrize(
     ("name", "written"),
-    chosen(product(("round", "swing"), ("csv", "dxf")), ("round", "dxf")),
+    chosen(product(("round", "swing"), ("csv", "dxf")), ("swing", "csv")),
 )
 def test_a_wheels_own_outline_has_no_error(name: str, written: str, tmp_path: Path) -> None:
     result = made(name)
@@ -155,7 +155,7 @@ WRONG: dict[str, tuple[Callable[[np.ndarray], np.ndarray], str]] = {
 }
 
 
-@pytest.mark.parametrize("fault", WRONG)
+@pytest.mark.parametrize("fault", chosen(list(WRONG), *list(WRONG)[:6], "mirrored"))
 @pytest.mark.parametrize("chord", few([3e-3, 1e-3]))
 def test_a_wrong_outline_is_refused_with_its_cause(fault: str, chord: float) -> None:
     """However far apart its points are: a wheel that is symmetric is not called mirrored."""

@@ -32,7 +32,7 @@ TURN = np.radians(np.arange(360.0))
 
 FORWARDS = [(name, OVERCLOSURE) for name in NAILS]
 BACKWARDS = [(name, -OVERCLOSURE) for name in NAILS]
-TURNS = [*few(FORWARDS), *few(reversed(BACKWARDS))]
+TURNS = few([*FORWARDS, *reversed(BACKWARDS)], 6)
 """Pairs that are turned once, forwards or backwards."""
 
 
@@ -232,7 +232,7 @@ def test_teeth_that_cannot_be_told_apart_are_refused() -> None:
         study(made.gears, MeshingSpec())
 
 
-@pytest.mark.parametrize(("most", "words"), [(1e7, "lost in rounding"), (1e5, "chords")])
+@pytest.mark.parametrize(("most", "words"), few([(1e5, "chords"), (1e7, "lost in rounding")]))
 def test_an_overclosure_too_small_to_be_shown_is_refused_with_one_that_is_not(
     most: float, words: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -98,6 +98,7 @@ def test_no_output_and_no_environment_is_packed(archives: Archives) -> None:
     assert [name for name in packed if name.startswith(KEPT_OUT) or "__pycache__" in name] == []
 
 
+@pytest.mark.slow
 def test_the_demo_runs_from_the_wheel_far_from_the_checkout(
     archives: Archives, tmp_path: Path
 ) -> None:

@@ -36,7 +36,7 @@ WORDS = st.sampled_from(
 
 
 @given(st.text(max_size=60) | st.lists(WORDS, max_size=25).map("".join))
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=40, deadline=None)
 def test_any_text_is_read_or_refused(text: str) -> None:
     expression = _read(text)
     if isinstance(expression, FormulaError):

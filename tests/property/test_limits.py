@@ -130,7 +130,7 @@ def stop(walk: Walk, value: float) -> Stop | None:
 
 
 @pytest.mark.parametrize("steps", [6, pytest.param(48, marks=pytest.mark.slow)])
-@pytest.mark.parametrize("name", few(WALKS, 3))
+@pytest.mark.parametrize("name", few(WALKS, 6))
 def test_nothing_jumps_but_what_is_told(name: str, steps: int) -> None:
     walk = WALKS[name]
     values = np.linspace(*walk.values, steps)

@@ -58,7 +58,7 @@ def test_all_numbers_at_once_and_back_again_are_the_same_text(file: Path) -> Non
     assert replaced(text, {}) == text
 
 
-@pytest.mark.parametrize("file", few(FILES, 6), ids=lambda file: file.stem)
+@pytest.mark.parametrize("file", few(FILES, 12), ids=lambda file: file.stem)
 def test_sliders_hold_what_is_in_the_file_and_end_at_what_reads(file: Path) -> None:
     text, found = file.read_text(), numbers(file.read_text())
     design = loads(text, file=str(file))

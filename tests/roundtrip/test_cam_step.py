@@ -132,6 +132,7 @@ def test_solids_are_valid_and_have_their_volume(name: str) -> None:
     assert valid(data)
 
 
+@pytest.mark.slow
 def test_the_same_cam_gives_the_same_bytes() -> None:
     assert written(named("rib")) == file_of("rib")
 
@@ -142,6 +143,7 @@ def test_the_same_cam_made_anew_gives_the_same_bytes(name: str) -> None:
     assert written(body(*CASES[name][:2])) == file_of(name)
 
 
+@pytest.mark.slow
 def test_the_groove_has_its_volume() -> None:
     """The mesh of 720 cam angles is 2.5 mm^3 off."""
     (solid,) = read_step(file_of("groove"))
@@ -152,7 +154,7 @@ def test_the_groove_has_its_volume() -> None:
     )
 
 
-@pytest.mark.parametrize("name", few(["arm", "cone", "rib"]))
+@pytest.mark.parametrize("name", few(["rib", "arm", "cone"], 3))
 def test_the_stated_error_is_kept(name: str) -> None:
     """At places of a grid that has none of its own with the B-splines."""
     cam, made = CASES[name][0], named(name)
@@ -272,7 +274,7 @@ def test_ramps_begin_and_end_with_rises() -> None:
 
 
 def test_another_volume_is_refused() -> None:
-    made = named("groove")
+    made = named("rib")
     with pytest.raises(SolidError, match=r"the solid's volume is .* mm3 off"):
         banded_solid(replace(made, volume=made.volume + 3.0))
 

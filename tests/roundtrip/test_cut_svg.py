@@ -29,6 +29,7 @@ from gearcam.pictures.drawings import Drawing, Feature, cut_drawing, wheel_drawi
 from helpers_contour import disc_contour, gear_contour, square_contour
 from helpers_files import ROLLER, read
 from helpers_pairs import profile
+from helpers_sampling import few
 from witness.distance import distances
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -139,7 +140,7 @@ def demand_same(got: shapely.Polygon, wanted: shapely.Polygon, tolerance: float)
     assert abs(got.area - wanted.area) < tolerance * wanted.length
 
 
-@pytest.mark.parametrize("kerf", [0.0, KERF])
+@pytest.mark.parametrize("kerf", few([KERF, 0.0]))
 def test_one_part_is_drawn_in_its_size_and_not_mirrored(kerf: float) -> None:
     drawing = cut_drawing(wheel_drawing(part()), kerf)
     sheet = sheet_of(cut_svg([drawing], "one", kerf))

@@ -157,7 +157,7 @@ def test_without_a_speed_the_program_stops_until_the_spindle_turns() -> None:
     assert "no speed is given" in text
 
 
-@pytest.mark.parametrize("cam", chosen(CAMS, "clockwise", "lower"))
+@pytest.mark.parametrize("cam", chosen(CAMS, "clockwise"))
 def test_a_wrapped_axis_goes_where_a_growing_one_goes(cam: str) -> None:
     growing, text = text_of(cam, SMALL), text_of(cam, WRAPPED)
     program, same = read(text, wrapped=True), read(growing)
@@ -223,6 +223,7 @@ def test_as_a_grows_metal_on_the_x_minus_side_is_on_the_right_of_the_tool() -> N
     assert "The wall is on the X+ side of the tool: M3 does not" in head(CAMS["upper"])
 
 
+@pytest.mark.slow
 def test_the_head_states_a_diameter_that_was_solved() -> None:
     top = re.search(r"Its end on top of the blank is at Z([\d.]+)\.", head(outer='"solve"'))
     blank = re.search(r"cylinder of ([\d.]+) mm", head(outer='"solve"'))

@@ -260,7 +260,7 @@ def part(**sizes: Any) -> Part:
     [
         ({"bore_diameter": 8.0}, 8.0),
         ({"bolts": 2, "bolt_circle": 40.0, "bolt_diameter": 4.0}, 4.0),
-        ({"stop_pin": 5.0}, 5.0),
+        pytest.param({"stop_pin": 5.0}, 5.0, marks=pytest.mark.slow),
         ({"bore_diameter": 20.0, "keyway_width": 6.0, "keyway_depth": 8.0}, 6.0),
         ({"bore_diameter": 20.0, "bore_flat": 17.0}, 17.0),
     ],

@@ -135,8 +135,8 @@ def test_csv_holds_the_edge_of_the_hole(made: GearPairResult) -> None:
     ("name", "kind"),
     [
         ("made", "stl"),
-        ("made", "3mf"),
-        ("made", "glb"),
+        pytest.param("made", "3mf", marks=pytest.mark.slow),
+        pytest.param("made", "glb", marks=pytest.mark.slow),
         ("waist", "stl"),
         pytest.param("waist", "3mf", marks=pytest.mark.slow),
         pytest.param("waist", "glb", marks=pytest.mark.slow),
@@ -239,6 +239,7 @@ def test_the_sheet_of_an_internal_pair_has_its_centre_distance(made: GearPairRes
     assert {"gear1", "gear2", "pitch point"} <= set(words)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(find_spec("OCP") is None, reason="needs the extra for STEP files")
 def test_rings_are_exact_step_solids() -> None:
     from helpers_step import read_step

@@ -14,7 +14,6 @@ import pytest
 from ezdxf.entities.dimension import Dimension
 from ezdxf.lldxf.encoding import decode_dxf_unicode
 
-import gearcam
 from gearcam.export.dxf import DxfStyle
 from gearcam.export.dxf_read import measure_dxf, read_dxf
 from gearcam.export.sheet_dxf import sheet_dxf
@@ -32,8 +31,10 @@ from gearcam.pictures.drawings import Drawing, reach
 from gearcam.pictures.drawings import Path as Chain
 from gearcam.sheets import wheel_sheet
 from gearcam.sheets.sheet import Sheet
+from helpers_built import built
 from helpers_contour import disc_contour, edges, gear_contour
 from helpers_pairs import PROFILES
+from helpers_sampling import chosen
 
 STYLE = DxfStyle(tolerance=1e-3)
 R12 = DxfStyle(tolerance=1e-3, curves="lines", version="R12")
@@ -141,7 +142,7 @@ def faults(data: bytes, expected: list[float], text: str) -> list[float]:
     return missing + found
 
 
-@pytest.fixture(scope="module", params=list(WHEELS))
+@pytest.fixture(scope="module", params=chosen(list(WHEELS), "plain", "d"))
 def wheel(request: pytest.FixtureRequest) -> tuple[Part, list[float], Sheet]:
     make, sizes = WHEELS[request.param]
     part = make()
@@ -369,6 +370,6 @@ def test_a_stepped_part_shows_its_steps() -> None:
     ],
 )  # fmt: skip
 def test_the_table_tells_what_the_part_is_made_by(profile: str, rows: tuple[str, ...]) -> None:
-    made = gearcam.build(gearcam.load(PROFILES / f"{profile}.toml")).files("drawing-svg")
+    made = built(PROFILES / f"{profile}.toml").files("drawing-svg")
     text = next(iter(made.values())).decode()
     assert [row for row in rows if f">{row}</text>" not in text] == []

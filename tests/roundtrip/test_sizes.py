@@ -27,7 +27,7 @@ PARTS = {
     "translating_cam": ("part", ("cam",)),
     "conjugate_cams": ("part.{}", ("cam1", "cam2")),
 }
-LONG = ("stepped_ellipse", "feeder", "log_spiral")
+LONG = ("stepped_ellipse", "feeder", "log_spiral", "shop_order")
 """Those whose files take long; others, and fewer steps, are measured each time."""
 
 

@@ -65,11 +65,13 @@ def faults(tmp_path_factory: pytest.TempPathFactory) -> dict[str, set[int]]:
     return found
 
 
+@pytest.mark.slow
 @WITH_CHECKER
 def test_strict_user_code_has_no_faults(faults: dict[str, set[int]]) -> None:
     assert faults["right.py"] == set()
 
 
+@pytest.mark.slow
 @WITH_CHECKER
 def test_each_wrong_use_is_found(faults: dict[str, set[int]]) -> None:
     lines = enumerate(WRONG.splitlines(), start=1)

@@ -22,6 +22,7 @@ from gearcam.base.display import ShortRepr, line, word
 from gearcam.console import all_lines
 from gearcam.designs import loads
 from gearcam.laws.ratio.ellipse import Ellipse
+from helpers_built import built
 from helpers_pairs import PROFILES, job, profile
 
 DEEP, EACH = 6, 3
@@ -29,7 +30,7 @@ DEEP, EACH = 6, 3
 
 
 def build(name: str) -> Any:
-    return gearcam.build(gearcam.load(PROFILES / f"{name}.toml"))
+    return built(PROFILES / f"{name}.toml")
 
 
 def reached(start: object) -> Iterator[tuple[str, object]]:
@@ -61,8 +62,11 @@ def _got(one: object, name: str) -> object:
 @pytest.mark.parametrize(
     "name",
     [
-        *("feeder", "valve_lever", "undercut_cam", "groove_cam"),
-        *(pytest.param(name, marks=pytest.mark.slow) for name in ("shop_order", "stepped_ellipse")),
+        *("valve_lever", "groove_cam"),
+        *(
+            pytest.param(name, marks=pytest.mark.slow)
+            for name in ("feeder", "undercut_cam", "shop_order", "stepped_ellipse")
+        ),
     ],
 )
 def test_everything_that_is_reached_shows_itself_in_one_line(name: str) -> None:

@@ -11,10 +11,10 @@ from typing import Any
 
 import pytest
 
-import gearcam
 from gearcam.base.errors import NotFiniteError
 from gearcam.base.facts import Fact, Facts, extent
 from gearcam.base.findings import Finding
+from helpers_built import built
 from helpers_pairs import profile
 
 TREE = {
@@ -74,7 +74,7 @@ def test_the_headline_and_what_is_always_shown() -> None:
 
 @pytest.mark.parametrize("name", ["nail_machine_two_phase", "feeder", "ellipse", "undercut_cam"])
 def test_a_good_design_shows_ten_lines_at_most(name: str) -> None:
-    facts = gearcam.build(gearcam.load(f"profiles/{name}.toml")).facts
+    facts = built(f"profiles/{name}.toml").facts
     lines = list(facts.shown())
     assert 5 <= len(lines) <= 10
     assert all(one.meaning and one.text for one in lines)
@@ -82,7 +82,7 @@ def test_a_good_design_shows_ten_lines_at_most(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["stepped_ellipse", "plate_cam_offset_roller"])
 def test_names_say_their_units(name: str) -> None:
-    facts = gearcam.build(gearcam.load(f"profiles/{name}.toml")).facts
+    facts = built(f"profiles/{name}.toml").facts
     named = [one for one in facts.quantities() if one.name.endswith(("_mm", "_deg"))]
     words = {one.name for one in named if not one.unit}
     assert words == {one.name for one in named if isinstance(one.value, str)}
@@ -107,7 +107,7 @@ def test_units_of_rates_are_told(name: str, meaning: str, text: str) -> None:
 
 @pytest.mark.parametrize("name", ["pair.none", "pair.module_mm.x", "gears.7.name", "gears.x", ""])
 def test_a_name_that_is_none_is_refused_whole(name: str) -> None:
-    facts = gearcam.build(gearcam.load("profiles/ellipse.toml")).facts
+    facts = built("profiles/ellipse.toml").facts
     assert name not in facts
     with pytest.raises(KeyError, match=re.escape(repr(name))):
         facts[name]
@@ -160,7 +160,7 @@ def test_a_cam_shows_both_pressure_angles_and_a_sliding_face_none() -> None:
     """A face that slides across its own travel is pushed along it: its pressure angle is 0."""
     names = {}
     for name in ("plate_cam_offset_roller", "flat_follower"):
-        facts = gearcam.build(gearcam.load(f"profiles/{name}.toml")).facts
+        facts = built(f"profiles/{name}.toml").facts
         names[name] = {one.meaning for one in facts.shown() if "pressure" in one.meaning}
     assert names == {
         "plate_cam_offset_roller": {"pressure angle, rise", "pressure angle, return"},

@@ -63,7 +63,7 @@ def steep(document: Any, folder: Path, motion: str = "") -> list[Any]:
     return [one for one in found if one.where.startswith(motion)]
 
 
-@pytest.mark.parametrize("name", few(CASES))
+@pytest.mark.parametrize("name", few(CASES, 4))
 def test_the_radius_that_is_named_is_the_smallest_that_keeps_the_limit(
     name: str, tmp_path: Path
 ) -> None:
@@ -97,7 +97,7 @@ def test_the_least_prime_radius_of_a_ramp_is_that_of_its_formula(tmp_path: Path)
 
 def test_the_radius_does_not_depend_on_the_one_that_is_given(tmp_path: Path) -> None:
     told = set()
-    for given in (7.0, 15.0, 40.0, 80.0):
+    for given in (7.0, 40.0):
         document = cam(ROLLER, {"prime_radius_mm": given}, 20, angles=STEEP)
         told |= {changes_of(one.message)["cam.prime_radius_mm"] for one in steep(document, tmp_path)
                  if one.code == "pressure-angle"}  # fmt: skip
@@ -142,7 +142,10 @@ def test_a_groove_keeps_its_rim(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("document", "words"),
     [
-        (cam(ROLLER, {"prime_radius_mm": 20}, angles=SUDDEN), "No prime radius up"),
+        pytest.param(
+            cam(ROLLER, {"prime_radius_mm": 20}, angles=SUDDEN), "No prime radius up",
+            marks=pytest.mark.slow,
+        ),
         (cam(ROLLER | {"offset_mm": 5}, {"prime_radius_mm": 20}, angles=SUDDEN),
          "or a smaller offset."),
         (cam(ARM, {"prime_radius_mm": 30}, 80, angles=STEEP), "or another arm or pivot distance."),

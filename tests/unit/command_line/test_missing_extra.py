@@ -14,6 +14,7 @@ from arch import rules
 from gearcam.cli import main
 from gearcam.commands import GOOD, WRONG
 from gearcam.parts.solids import LIBRARIES
+from helpers_sampling import few
 
 ROOT = rules.ROOT
 PROFILE = ROOT / "profiles" / "ellipse.toml"
@@ -43,7 +44,7 @@ def test_the_extra_is_named(
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("kind", PROFILES)
+@pytest.mark.parametrize("kind", few(reversed(PROFILES)))
 def test_outlines_and_the_report_need_no_library_of_solids(
     kind: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

@@ -34,8 +34,11 @@ def test_every_kind_can_be_begun_for_each_process() -> None:
         assert set(KINDS[kind].processes) == printed | cut | milled
 
 
-LONG = {("spatial-cam", ""), ("globoidal-cam", ""), ("globoidal-cam", "printing")}
-"""Solids of cams in space are made for printing a cylinder cam."""
+LONG = {
+    *(("spatial-cam", ""), ("globoidal-cam", ""), ("globoidal-cam", "printing")),
+    *(("gear-pair", ""), ("gear-pair", "wire"), ("cam", "wire"), ("spatial-cam", "milling")),
+}
+"""Solids of cams in space are made for printing a cylinder cam, kerfs for the laser."""
 
 
 @pytest.mark.parametrize(
@@ -90,7 +93,7 @@ def test_optional_keys_show_their_default_or_say_that_they_show_an_example(
     assert shown & {"module_mm", "base_radius_mm", "arm_mm", "length_mm"}
 
 
-QUICK = [("cam", ""), ("gear-pair", ""), ("mechanism", ""), ("spatial-cam", "printing")]
+QUICK = [("cam", ""), ("gear-pair", ""), ("mechanism", "")]
 
 
 @pytest.mark.parametrize(("kind", "process"), chosen(PROCESSES, *QUICK))

@@ -12,6 +12,7 @@ import pytest
 
 from arch import rules
 from helpers_processes import ENVIRONMENT
+from helpers_sampling import chosen
 
 PAGE = (rules.ROOT / "docs" / "python.md").read_text("utf-8")
 RECIPES = dict(re.findall(r"^## (.+?)\n.*?^```python\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE))
@@ -43,7 +44,9 @@ def test_there_are_twelve_recipes() -> None:
     assert PAGE.count("```python") == 12
 
 
-@pytest.mark.parametrize("title", RECIPES)
+@pytest.mark.parametrize(
+    "title", chosen(list(RECIPES), *(one for one in RECIPES if one[:2] not in ("3.", "9.")))
+)
 def test_a_recipe_prints_what_is_shown(
     title: str, desk: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

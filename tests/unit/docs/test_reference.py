@@ -151,7 +151,7 @@ def test_a_default_limit_is_that_of_the_program() -> None:
     assert row[2] == "`end_gap_deg` = 10 deg"
 
 
-@pytest.mark.parametrize("name", few(DESIGNS))
+@pytest.mark.parametrize("name", few(DESIGNS, 4))
 def test_the_names_of_files_are_those_written(name: str) -> None:
     """Every file of every form; those of steps by the first."""
     result = gearcam.build(gearcam.load(PROFILES / f"{name}.toml"))

@@ -26,6 +26,7 @@ from gearcam.export.write import rewrite, write_new, writing
 from helpers_folder import put
 from helpers_interrupts import PAIR, state
 from helpers_processes import ENVIRONMENT
+from helpers_sampling import few
 
 GOOD = PAIR.format(eccentricity=0.2, bore=8, files='["csv"]')
 NAMES = ("one.dxf", "two.dxf", "three.dxf")
@@ -298,13 +299,15 @@ def run(words: str, place: Path) -> subprocess.CompletedProcess[bytes]:
 @pytest.mark.parametrize(
     ("words", "code", "told"),
     [
-        ("COMMAND new cam >/dev/full", 2, b"cannot write to the standard output: No space left"),
-        ("COMMAND --help >/dev/full", 2, b"cannot write to the standard output: No space left"),
-        ("COMMAND check good.toml >/dev/full", 2, b"cannot write to the standard output"),
-        ("COMMAND check none.toml 2>/dev/full", 2, b""),
-        ("COMMAND check none.toml 2>&-", 2, b""),
-        ("COMMAND check good.toml >&- 2>&- <&-", 0, b""),
-        ("COMMAND new cam | true", 0, b""),
+        *few([
+            ("COMMAND check good.toml >/dev/full", 2, b"cannot write to the standard output"),
+            ("COMMAND new cam >/dev/full", 2, b"cannot write to the standard output: No space"),
+            ("COMMAND check none.toml 2>/dev/full", 2, b""),
+            ("COMMAND --help >/dev/full", 2, b"cannot write to the standard output: No space"),
+            ("COMMAND check good.toml >&- 2>&- <&-", 0, b""),
+            ("COMMAND check none.toml 2>&-", 2, b""),
+            ("COMMAND new cam | true", 0, b""),
+        ]),
     ],
 )  # fmt: skip
 def test_streams_that_are_full_closed_or_gone(

@@ -154,6 +154,7 @@ def test_contact_off_the_flanks() -> None:
     assert "fillet-interference" not in codes[1]
 
 
+@pytest.mark.slow
 def test_a_tooth_that_lags_leaves_arcs_without_contact_but_no_interference() -> None:
     """Tooth 1 of the driver 20 um behind its place, and the same pair as it should be.
 

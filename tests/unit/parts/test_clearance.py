@@ -21,7 +21,7 @@ from gearcam.parts.openings import Workpiece
 from gearcam.parts.shapes import Circle
 from helpers_contour import disc_contour, gear_contour, square_contour
 from helpers_pairs import profile
-from helpers_sampling import few
+from helpers_sampling import chosen, few
 
 SLOTTED = Workpiece(name="wheel 1", wheel=1, rim=5.4, travel=1.5)
 
@@ -52,7 +52,7 @@ SHIFTED = {
 
 
 @pytest.mark.parametrize("by", few([0.2, 1.0]))
-@pytest.mark.parametrize("name", SHIFTED)
+@pytest.mark.parametrize("name", chosen(list(SHIFTED), *(one for one in SHIFTED if one != "slot")))
 def test_clearance_widens_what_something_goes_through(name: str, by: float) -> None:
     """Against shapely's buffer with sharp corners, as they stay in keyways and at flats."""
     contour = disc_contour(50.0)

@@ -312,10 +312,15 @@ REFUSED: list[tuple[str, dict[str, Any], str, float, float, str]] = [
 ]  # fmt: skip
 
 
+SLOTS = ("pin and hub", "wider slot")
+
+
 @pytest.mark.parametrize(
     ("sizes", "name", "fits", "fails", "message"),
-    [case[1:] for case in REFUSED],
-    ids=[case[0] for case in REFUSED],
+    [
+        pytest.param(*case, id=name, marks=[pytest.mark.slow] * (name in SLOTS))
+        for name, *case in REFUSED
+    ],
 )
 def test_what_has_no_room_is_refused_and_what_has_is_made(
     sizes: dict[str, Any], name: str, fits: float, fails: float, message: str

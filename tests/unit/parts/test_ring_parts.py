@@ -216,7 +216,7 @@ def test_bolts_lie_in_the_rim() -> None:
 
 
 @pytest.mark.parametrize(
-    ("circle", "diameter"), [(130.4, 5.6), (133.0, 3.0), (100.0, 3.0), (160.0, 3.0)]
+    ("circle", "diameter"), few([(130.4, 5.6), (133.0, 3.0), (100.0, 3.0), (160.0, 3.0)])
 )
 @pytest.mark.parametrize("wall", few([1.0, 0.5]))
 def test_bolts_outside_the_rim_are_refused(circle: float, diameter: float, wall: float) -> None:

@@ -19,12 +19,13 @@ from gearcam.pictures.drawings import CENTRODE, OUTLINE, Feature, Path
 from gearcam.pictures.scenes import ColouredCurve, ContactPoints, MovingBody, Scene
 from gearcam.report.data import chart_data, scene_data
 from gearcam.report.page import blocks
+from helpers_built import built
 
 NAMES = ("ellipse", "ring_ellipse", "feeder", "stepped_ellipse", "groove_cam", "conjugate_cams")
 
 
 def made(name: str) -> tuple[Any, Scene]:
-    result = gearcam.build(gearcam.load(rules.ROOT / "profiles" / f"{name}.toml"))
+    result = built(rules.ROOT / "profiles" / f"{name}.toml")
     return result, result.scene(24)
 
 

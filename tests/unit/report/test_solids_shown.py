@@ -112,7 +112,7 @@ MOVED = (
 )  # fmt: skip
 
 
-@pytest.mark.parametrize("name", chosen(MOVED, *MOVED[:-1]))
+@pytest.mark.parametrize("name", chosen(MOVED, *MOVED[:6]))
 def test_solids_stand_where_the_scene_has_them_at_the_place_of_the_design(name: str) -> None:
     """The page moves a solid by the poses of its name: they are of the same frame.
 
@@ -158,7 +158,7 @@ def body(mesh: Any) -> manifold3d.Manifold:
 
 @pytest.mark.parametrize(
     ("rotation", "oscillating"),
-    chosen(product(("ccw", "cw"), (False, True)), ("ccw", True), ("cw", False)),
+    chosen(product(("ccw", "cw"), (False, True)), ("cw", True)),
 )
 def test_the_roller_runs_through_the_groove_of_the_cam_that_turns(
     rotation: str, oscillating: bool

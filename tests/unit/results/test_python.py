@@ -149,7 +149,8 @@ def _built(design: Any) -> tuple[bytes, ...]:
     return json.dumps(told).encode(), *(array.tobytes() for array in arrays)
 
 
-@pytest.mark.parametrize("count", [10, pytest.param(100, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("count", [10, 100])
 def test_a_pool_of_two_builds_the_same_to_the_last_bit(count: int) -> None:
     pair = gc.design({**PAIR, "output": {"chord_tolerance_mm": 0.01}})
     cam = gc.load("profiles/eccentric_cam.toml").with_({"output.files": ["csv"]})

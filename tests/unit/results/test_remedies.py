@@ -42,7 +42,7 @@ from helpers_remedies import (
     job_of,
     pair,
 )
-from helpers_sampling import few
+from helpers_sampling import chosen, few
 
 DESIGNS = {name: (made[0], made[-1]) for name, made in (REFUSED | ERRORS).items()}
 
@@ -80,40 +80,14 @@ OTHER_RATIO = {
 }
 """Designs whose tooth counts are refused for their ratio."""
 
-LONG = [
-    "a concave return",
-    "a steep return",
-    "the same at a centre distance",
-    "concave part too tight",
-    "teeth cut off",
-    "bolts meet the outline",
-    "a crank's teeth",
-    "a long way",
-    "rounded tips",
-    "harmonics of a ring",
-    "phases of a ring",
-    "a rim that follows, too thin for its bolts",
-    "bolts on the edge of a plate",
-    "bolts in each other",
-    "bolts beyond a plate",
-    "bolts within the teeth of a thin rim",
-    "undercut that leaves nothing to drive",
-    "ratios of a closed spiral",
-    "unequal lobes",
-    "wide stop pin",
-    "undercut cam",
-    "an outside within the roots, and bolts",
-    "a rim too thin for its bolts",
-]
-"""Designs whose search takes long. Every sixth of the others is searched each time."""
-
-
-OFTEN = [name for name in DESIGNS if name not in LONG]
-
-
-@pytest.mark.parametrize(
-    "name", [*few(OFTEN, 6), *(pytest.param(name, marks=pytest.mark.slow) for name in LONG)]
+SOON = (
+    *("corner radius", "one lobe in a ring", "bore", "a travel that a formula misses"),
+    *("stop pin of a closed pair", "tip radius"),
 )
+"""Designs that are searched each time."""
+
+
+@pytest.mark.parametrize("name", chosen([*DESIGNS], *SOON))
 def test_what_a_search_names_is_true_when_followed(name: str, folder: Path) -> None:
     document, keys = DESIGNS[name]
     before = errors(document, folder)
@@ -154,7 +128,7 @@ def test_the_next_smaller_change_does_not_do(name: str, folder: Path) -> None:
 
 @pytest.mark.parametrize(
     "name",
-    few(["follower's offset", "undercut cam", "arm", "hub", "play", "pointed rack", "shallow"]),
+    few(["play", "undercut cam", "follower's offset", "hub", "shallow", "pointed rack", "arm"]),
 )
 def test_remedies_are_short_and_nearly_the_least(name: str, folder: Path) -> None:
     found = search(name, folder).found
@@ -168,6 +142,7 @@ def test_remedies_are_short_and_nearly_the_least(name: str, folder: Path) -> Non
                 assert value == pytest.approx(remedy.less[key], rel=0.013)  # 1 %, and rounding
 
 
+@pytest.mark.slow
 def test_remedies_of_both_wheels_are_nearly_the_least(folder: Path) -> None:
     blank = {"bore_diameter_mm": 12, "bolts": 6, "bolt_circle_mm": 18, "bolt_diameter_mm": 8}
     document = pair(CIRCLE, [24, 24], blank=blank | {"timing_marks": False})
@@ -191,7 +166,7 @@ def told_teeth(message: str) -> list[int]:
     return [int(count) for count in found.groups()]
 
 
-@pytest.mark.parametrize("name", few(WARNED))
+@pytest.mark.parametrize("name", few(WARNED, 4))
 def test_tooth_counts_of_warnings_keep_the_lobes_and_are_true(name: str, folder: Path) -> None:
     document, code = WARNED[name]
     told = [found for found in job_of(document, folder).findings if found.code == code]
@@ -324,7 +299,8 @@ LATE = {
 """Designs without and with a file that is refused though the parts are made, and what helped."""
 
 
-@pytest.mark.parametrize("name", few(LATE, 8))
+@pytest.mark.slow
+@pytest.mark.parametrize("name", list(LATE))
 def test_a_remedy_makes_all_files_that_are_asked_for(name: str, folder: Path) -> None:
     document, output, key = LATE[name]
 
@@ -433,7 +409,7 @@ def test_no_values_that_help_are_sought_for_candidates(monkeypatch: pytest.Monke
     monkeypatch.setattr("gearcam.kinds.cam.hints.hinted", never)
     result = gearcam.build(design)
     assert [replace(one, message="") for one in result.findings_without_hints] == plain
-    assert gearcam.remedies(result).found
+    assert gearcam.remedies(result, patience=1.0).found
     assert result.record()["findings.warnings"] == sum(one.severity == "warning" for one in plain)
     assert measured(design, 0, {}).errors == sum(one.severity == "error" for one in plain)
     with pytest.raises(AssertionError):

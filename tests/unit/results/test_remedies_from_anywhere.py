@@ -77,9 +77,10 @@ STARTS: dict[str, tuple[Any, str, tuple[float, ...]]] = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
-    ["a roller", *(pytest.param(name, marks=pytest.mark.slow) for name in list(STARTS)[::2])],
+    list(STARTS),
 )
 def test_the_remedy_does_not_depend_on_the_start(name: str, tmp_path: Path) -> None:
     make, key, starts = STARTS[name]
@@ -89,6 +90,7 @@ def test_the_remedy_does_not_depend_on_the_start(name: str, tmp_path: Path) -> N
     assert max(sizes) <= min(sizes) * 1.011
 
 
+@pytest.mark.slow
 def test_where_a_ratio_that_closes_is_not_enough_the_search_goes_on(tmp_path: Path) -> None:
     law = {"type": "phases", "knots_deg": [0, 120, 360], "ratios": [0.5, 2, 0.5]}
     document = pair(law, [12, 12])
@@ -104,6 +106,7 @@ def test_where_a_ratio_that_closes_is_not_enough_the_search_goes_on(tmp_path: Pa
         assert not [one for one in made.findings if one.severity == "error"]
 
 
+@pytest.mark.slow
 def test_a_list_that_is_changed_as_a_whole_stands_alone(tmp_path: Path) -> None:
     law = {"type": "phases", "knots_deg": [0, 120, 360], "ratios": [0.5, 2, 0.5]}
     found = gearcam.remedies(job_of(pair(law, [20, 20]), tmp_path)).found
@@ -206,6 +209,7 @@ def test_ratios_that_close_a_law_are_those_of_the_file(name: str, tmp_path: Path
         _ = job_of(followed(pair(law, teeth), dict(way.near)), tmp_path).law
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "law",
     few([
@@ -241,6 +245,7 @@ def test_a_rim_that_allows_no_bore_of_use_asks_for_more_teeth(
         assert ("more teeth (a smaller module)" in finding.message) != named
 
 
+@pytest.mark.slow
 def test_a_change_that_leaves_errors_is_not_listed_as_tried_in_vain(tmp_path: Path) -> None:
     """A smaller cutter fits the groove, whose walls lose the corners of a jump of the velocity."""
     motion = [

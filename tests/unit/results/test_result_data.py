@@ -20,6 +20,7 @@ from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.numeric.columns import Columns
 from gearcam.parts.solids import volume_error
+from helpers_built import built
 from helpers_files import ROLLER, table
 from helpers_pairs import PROFILES, job, profile
 from helpers_sampling import few
@@ -235,7 +236,7 @@ def test_a_dictionary_is_what_the_summary_holds(name: str, tmp_path: Path) -> No
 
 @pytest.mark.parametrize("name", few(["ellipse", "stepped_ellipse", "eccentric_cam"]))
 def test_solids_are_the_parts(name: str) -> None:
-    result = gearcam.build(gearcam.load(PROFILES / f"{name}.toml"))
+    result = built(PROFILES / f"{name}.toml")
     solids = result.solids
     assert list(solids) == [part.name for part in result.parts]
     for part in result.parts:
@@ -278,7 +279,7 @@ def test_facts_are_plain_numbers(name: str) -> None:
             value = list(value.values())
         return set().union(*map(kinds, value)) if isinstance(value, list) else {type(value)}
 
-    found = gearcam.build(gearcam.load(PROFILES / f"{name}.toml")).facts.document
+    found = built(PROFILES / f"{name}.toml").facts.document
     assert kinds(found) <= {int, float, str, bool}
 
 

@@ -281,6 +281,7 @@ def test_what_a_study_wrote_stays_with_its_design(
     assert file not in desk.run("build")["files"]
 
 
+@pytest.mark.slow
 def test_a_design_file_is_neither_removed_nor_written_over(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -249,7 +249,7 @@ EXPECTED: dict[tuple[str, Callable[[str, Path], None]], dict[str, int]] = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize(("name", "output"), few(EXPECTED))
+@pytest.mark.parametrize(("name", "output"), few(EXPECTED, 4))
 def test_nothing_is_computed_twice(
     name: str, output: Callable[[str, Path], None], tmp_path: Path
 ) -> None:
@@ -359,7 +359,7 @@ def test_a_page_shows_solids_of_fewer_vertices(monkeypatch: pytest.MonkeyPatch) 
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="threads are counted where Linux lists them")
-@pytest.mark.parametrize(("asked", "threads"), [({}, 1), ({"OPENBLAS_NUM_THREADS": "2"}, 2)])
+@pytest.mark.parametrize(("asked", "threads"), few([({}, 1), ({"OPENBLAS_NUM_THREADS": "2"}, 2)]))
 def test_the_command_has_no_threads_for_linear_algebra(asked: dict[str, str], threads: int) -> None:
     """But those that are asked for, and of these at most one for each processor."""
     words = (

@@ -18,6 +18,7 @@ from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.designs.writing import toml_text
 from helpers_globoidal import DESIGN
 from helpers_pairs import PROFILES
+from helpers_sampling import few
 
 TEXT = (PROFILES / "globoidal_indexer.toml").read_text("utf-8")
 
@@ -103,15 +104,17 @@ def test_findings() -> None:
 
 @pytest.mark.parametrize(
     ("changes", "code", "key"),
-    [
-        ({"index__angle_deg": 100}, "pressure-angle", "cam.center_distance_mm"),
-        ({"cam__length_mm": 30}, "loose-turret", "cam.length_mm"),
-        (
-            {"cam__center_distance_mm": 75},
-            "undercut",
-            "turret.roller_radius_mm",
-        ),
-    ],
+    few(
+        [
+            ({"index__angle_deg": 100}, "pressure-angle", "cam.center_distance_mm"),
+            ({"cam__length_mm": 30}, "loose-turret", "cam.length_mm"),
+            (
+                {"cam__center_distance_mm": 75},
+                "undercut",
+                "turret.roller_radius_mm",
+            ),
+        ]
+    ),
 )
 def test_values_that_findings_name_help(changes: dict[str, Any], code: str, key: str) -> None:
     before = built(**changes)
@@ -191,6 +194,7 @@ def test_the_scene_moves_rollers_along_the_grooves() -> None:
     assert np.abs(edges - at).min() == pytest.approx(half, rel=0.02)
 
 
+@pytest.mark.slow
 def test_tables_import_no_other_kind_and_make_no_solid(tmp_path: Path) -> None:
     text = TEXT.replace("density_kg_m3 = 7850", "")
     design = tmp_path / "plain.toml"

@@ -25,9 +25,10 @@ from gearcam.spatial.globoidal_surface import (
     turret_surface,
 )
 from gearcam.spatial.surface import revolved
+from helpers_built import built as shared
 from helpers_globoidal import DESIGN, indexer
 from helpers_pairs import PROFILES
-from helpers_sampling import chosen
+from helpers_sampling import chosen, few
 from helpers_spatial import solid
 from witness.roller_of_turret import Wheel
 
@@ -85,7 +86,7 @@ AROUND = ((-30.1, (1,)), (60.13, (1, -1)), (71.2, (1, -1)), (200.3, (-1,)))
 
 @pytest.mark.parametrize(
     ("steps", "angle"),
-    chosen(product((360, 720, 1080), ANGLES), (360, -30.1), (360, 71.2)),
+    chosen(product((360, 720, 1080), ANGLES), (360, 71.2)),
 )
 def test_rollers_fit_between_the_ribs(steps: int, angle: float) -> None:
     """A roller that is smaller by the chord error is clear; one that is wider is not."""
@@ -136,7 +137,7 @@ def test_the_backlash_at_rest() -> None:
 
 
 @pytest.mark.parametrize("rotation", ["ccw", "cw"])
-@pytest.mark.parametrize("bore", [0.0, 30.0])
+@pytest.mark.parametrize("bore", few([30.0, 0.0]))
 def test_solids_are_closed(rotation: str, bore: float) -> None:
     more = {"cam.rotation": rotation, "blank.bore_diameter_mm": bore}
     made = built(180, 5, **more)
@@ -155,6 +156,7 @@ def test_the_volume_is_of_second_order() -> None:
     assert second / third == pytest.approx(4.0, abs=0.5)
 
 
+@pytest.mark.slow
 def test_the_error_of_the_volume_is_stated() -> None:
     coarse, fine = (built(*size).volume for size in ((360, 7), (540, 10)))
     result = gc.build(
@@ -215,7 +217,7 @@ def ring_points(cam: GloboidalCam, count: int) -> Array:
 
 @pytest.mark.parametrize(
     ("distance", "unclear", "count"),
-    chosen([(100, 0.05, 24), (100, 0.05, 120), (75, 0.25, 120)], (100, 0.05, 24)),
+    chosen([(100, 0.05, 12), (100, 0.05, 120), (75, 0.25, 120)], (100, 0.05, 12)),
 )
 def test_metal_is_where_no_roller_comes(distance: float, unclear: float, count: int) -> None:
     """At random points of the ring of the ribs, by search; of an undercut cam too."""
@@ -236,7 +238,7 @@ def test_metal_is_where_no_roller_comes(distance: float, unclear: float, count: 
     assert clear.sum() > count / 2
 
 
-@pytest.mark.parametrize("steps", [60, pytest.param(120, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("steps", [36, pytest.param(120, marks=pytest.mark.slow)])
 def test_a_carved_rib_is_the_rib_of_walls(monkeypatch: pytest.MonkeyPatch, steps: int) -> None:
     """Of a cam that is not undercut: larger by the scallops, nowhere by more than is stated."""
     result = gc.build(DESIGN.with_({"cam.length_mm": 46, "cam.roller_clearance_mm": 0}))
@@ -286,6 +288,7 @@ def test_cam_and_turret_turn_together_without_touching(rotation: str) -> None:
     assert (cam ^ moved).volume() > 0.1
 
 
+@pytest.mark.slow
 def test_an_undercut_wall_is_told_with_its_solid() -> None:
     changes = {"cam.center_distance_mm": 75, "output.files": ["stl"], "output.wall_step_deg": 5}
     found = gc.build(DESIGN.with_({**changes, "output.wall_points": 4}))
@@ -319,7 +322,7 @@ def test_a_solid_of_too_many_facets_is_refused_with_the_least_step(
 
 @pytest.mark.parametrize("file", ["globoidal_indexer", "cylinder_cam"])
 def test_the_number_of_facets_is_about_that_of_what_a_solid_is_made_from(file: str) -> None:
-    result: Any = gc.build(gc.load(PROFILES / f"{file}.toml"))
+    result = shared(PROFILES / f"{file}.toml")
     for steps, places in ((90, 5), (180, 9)):
         if file == "cylinder_cam":
             count = len(result.solid_of(steps, places).triangles)

@@ -173,8 +173,8 @@ CASES = {
 }
 
 
-OFTEN = ("clockwise", "an arm", "a smaller cone", "a rib")
-"""Each sort of follower, roller and tool."""
+OFTEN = ("clockwise", "an arm")
+"""Each sort of follower."""
 
 
 @pytest.mark.parametrize("case", chosen(CASES, *OFTEN))
@@ -207,9 +207,7 @@ NAMES = ("as wide as the groove", "half as wide", "a smaller cone")
     ("name", "axis"),
     chosen(
         product(NAMES, range(4)),
-        *((NAMES[0], axis) for axis in range(3)),
-        (NAMES[1], 3),
-        (NAMES[2], 2),
+        *((NAMES[0], axis) for axis in range(4)),
     ),
 )
 def test_a_path_that_is_10_um_off_is_found(name: str, axis: int) -> None:
@@ -235,7 +233,7 @@ def test_a_path_that_is_10_um_off_is_found(name: str, axis: int) -> None:
             (6.0, {}),
             (8.0, {}),
         ],
-        3,
+        7,
     ),
 )
 def test_the_whole_way_of_the_roller_is_cut(diameter: float, cut: dict[str, Any]) -> None:

@@ -47,6 +47,7 @@ def test_one_that_is_smaller_does_not_keep_the_limit(cone: Any) -> None:
     assert "pressure-angle" in {one.code for one in smaller.findings}
 
 
+@pytest.mark.slow
 def test_undercut_decides_for_a_large_roller() -> None:
     limits = {"limits.pressure_angle_deg": 80, "follower.cone_deg": 0}
     wide = {"follower.roller_radius_mm": 40, "cam.length_mm": 300, "cam.lowest_mm": 100}
@@ -66,6 +67,7 @@ def test_a_cam_that_hardly_moves_needs_its_walls() -> None:
     assert result.solution.diameter == pytest.approx(40.0 + 2 * (2.0 + 18.0 + 0.5))
 
 
+@pytest.mark.slow
 def test_the_solved_design_is_a_file_that_builds_the_same() -> None:
     result = of_the_profile()
     text = result.more_files["solved.toml"].decode()

@@ -16,7 +16,7 @@ from gearcam.spatial.cam import SpatialCam
 from gearcam.spatial.guides import RollerGuide, Turret
 from gearcam.spatial.surface import Cylinder, chord_error, roller_surface, surface
 from helpers_pairs import PROFILES
-from helpers_sampling import chosen
+from helpers_sampling import chosen, few
 from helpers_spatial import reference, solid, swinging
 
 EXACT = 44298.298
@@ -107,7 +107,7 @@ def overlaps(body: Any, cam: SpatialCam, count: int, more: float) -> list[float]
 
 
 @pytest.mark.parametrize(("steps", "count"), chosen([(360, 12), (720, 720)], (360, 12)))
-@pytest.mark.parametrize("clearance", [0.0, 0.05])
+@pytest.mark.parametrize("clearance", few([0.05, 0.0]))
 def test_the_roller_runs_through_the_groove(clearance: float, steps: int, count: int) -> None:
     """It neither overlaps beyond the chord error nor has a gap beyond that and the clearance."""
     cam = reference(height=15.0, clearance=clearance, floor=27.96)
@@ -127,7 +127,7 @@ def test_two_rollers_embrace_a_rib() -> None:
         assert min(overlaps(moved, cam, 10, 1.1 * error)) > 0.0
 
 
-@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("side", few([1, -1]))
 def test_a_wall_that_is_off_by_5_um_is_found(side: int) -> None:
     cam = reference(height=15.0)
     made = mesh(cam)

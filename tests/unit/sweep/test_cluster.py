@@ -64,6 +64,7 @@ def rows(local: Any, wanted: Jobs, base: gc.Design = BASE, **settings: Any) -> d
     return found
 
 
+@pytest.mark.slow
 def test_rows_are_those_of_processes_to_the_last_bit(local: Any) -> None:
     jobs = [(k, {"law.eccentricity": 0.08 * k, "pair.teeth": [20, 20]}) for k in range(16)]
     here = {row.number: row for row in Processes(jobs=1).run(BASE, iter(jobs))}
@@ -74,6 +75,7 @@ def test_rows_are_those_of_processes_to_the_last_bit(local: Any) -> None:
     assert 0 < sum(not row.made for row in there.values()) < 16
 
 
+@pytest.mark.slow
 def test_workers_find_the_files_that_a_design_names(
     local: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -82,6 +84,7 @@ def test_workers_find_the_files_that_a_design_names(
     assert found[0].made
 
 
+@pytest.mark.slow
 def test_lots_of_a_session_are_built_by_the_processes_of_all_workers(local: Any) -> None:
     with Cluster(address=local.scheduler_address, measure=odd).session(BASE) as build:
         pids = [

@@ -71,7 +71,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_the_best_is_written_with_a_table_and_a_page(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(["optimize", "cam.toml", "-o", "out", "--trials", "40"]) == 0
+    assert main(["optimize", "cam.toml", "-o", "out", "--trials", "40", "--jobs", "1"]) == 0
     said = capsys.readouterr().out
     assert "scipy, since there is one goal; 40 trials" in said
     best = gc.build(gc.load("out/best.toml"))
@@ -115,6 +115,7 @@ def test_a_search_goes_on_from_its_log_and_is_the_same_for_two_processes(folder:
     assert len(front) > 1
 
 
+@pytest.mark.slow
 def test_the_best_of_a_design_with_a_file_builds_from_any_folder(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -202,6 +203,7 @@ def test_an_interruption_keeps_what_is_built(
         assert (folder / "out" / "best.toml").exists() == (count > 0)
 
 
+@pytest.mark.slow
 def test_a_search_without_a_variant_that_can_be_taken_says_why(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -18,7 +18,7 @@ import pytest
 import compare
 from compare_files import called, files, folders, summaries, told
 from compare_sides import Side
-from helpers_sampling import few
+from helpers_sampling import chosen
 from random_designs.cam import FOLLOWERS, in_turn
 from random_designs.designs import MAKERS, design
 from random_designs.documented import known_keys, schema
@@ -121,7 +121,7 @@ def test_each_motion_law_meets_each_follower() -> None:
         assert len(pairs) == count * len(FOLLOWERS)
 
 
-@pytest.mark.parametrize("kind", few(MAKERS))
+@pytest.mark.parametrize("kind", chosen(list(MAKERS), "cam", "globoidal-cam"))
 def test_every_key_and_file_that_the_program_documents_is_drawn(kind: str) -> None:
     first = next(filter(None, (document(kind, index) for index in range(MOST))))
     wanted = {
@@ -324,7 +324,10 @@ def run(
         ("1.5", "(Path(out) / 'outline.csv').unlink()", "only in base"),
         ("1.5", "raise ValueError('no way')", "built | ValueError no way"),
         ("1.5", "if 'one' in out: os._exit(3)", "end:built | crash #: 1 design\n"),
-        ("1.5", "while 'two' in out: pass", "end:built | out of time: 1 design\n"),
+        pytest.param(
+            *("1.5", "while 'two' in out: pass", "end:built | out of time: 1 design\n"),
+            marks=pytest.mark.slow,
+        ),
     ],
 )
 def test_a_planted_difference_is_told(

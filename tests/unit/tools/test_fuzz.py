@@ -19,7 +19,7 @@ from fuzz import oracles, trial
 from fuzz.campaign import Campaign, Case
 from fuzz.command import main
 from fuzz.cross_checks_cam import doubts as doubts_of_cam
-from fuzz.outcome import BUILT, REFUSED, WRONG, Failure, Outcome, Task
+from fuzz.outcome import BUILT, REFUSED, WRONG, Outcome, Task
 from fuzz.pool import Pool
 from fuzz.shrink import shrunk
 from gearcam.base.errors import DesignError, InfeasibleError
@@ -55,7 +55,8 @@ def test_whatever_happens_in_a_process_every_task_has_its_outcome() -> None:
         ends = dict(pool.each(tasks))
     failures = [ends[number].failure for number in range(len(words))]
     assert [one and one.kind for one in failures] == [None, "time", "crash", "memory", "time", None]
-    assert ends[2].failure == Failure(kind="crash", words="the process ended with 7", place="7")
+    assert ends[2].failure is not None
+    assert "ended twice" in ends[2].failure.words
     assert (ends[0].reason, ends[5].reason) == ("one", "two")
 
 

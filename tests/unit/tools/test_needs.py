@@ -10,7 +10,6 @@ from pathlib import Path
 import pytest
 
 import needs
-from helpers_sampling import few
 
 TABLE = needs.table(needs.PAGE.read_text(encoding="utf-8"))
 SLOW = (
@@ -44,7 +43,8 @@ def test_the_packages_are_those_that_are_allowed() -> None:
     assert names | {"OCP"} == set(needs.PACKAGES)
 
 
-@pytest.mark.parametrize("kind", few(needs.DESIGNS))
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", list(needs.DESIGNS))
 def test_one_after_the_other_no_output_needs_more_than_is_told(kind: str) -> None:
     """In one process, so that what is loaded is what all rows so far tell of."""
     outputs = QUICK[kind]

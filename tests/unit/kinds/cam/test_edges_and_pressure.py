@@ -154,6 +154,7 @@ def test_a_sharp_peak_of_the_pressure_is_found(base: float, back: float, up: flo
     assert even.max() < 0.999 * values.max()
 
 
+@pytest.mark.slow
 def test_a_solved_size_keeps_the_limit_at_a_sharp_peak() -> None:
     solve = {"base_radius_mm": "solve", "thickness_mm": 10}
     limits = {"profile_radius_mm": 1e-4, "contact_pressure_mpa": 5000}

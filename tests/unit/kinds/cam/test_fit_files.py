@@ -92,6 +92,7 @@ def test_what_noise_hides_is_said(tmp_path: Path) -> None:
     assert "cannot be distinguished from" in study.files["fitted.toml"].decode()
 
 
+@pytest.mark.slow
 def test_a_motion_without_a_law_is_said(tmp_path: Path) -> None:
     wave = 4.0 * np.exp(2.0 * (np.cos(np.radians(ANGLES)) - 1.0))
     study = gearcam.build(gearcam.load(PLATE)).follow(
@@ -105,6 +106,7 @@ def test_a_motion_without_a_law_is_said(tmp_path: Path) -> None:
     assert "pivot" not in warnings[0].message  # the rows are the lift itself
 
 
+@pytest.mark.slow
 def test_the_sizes_of_the_follower_are_in_doubt_if_a_profile_moves_by_no_law() -> None:
     given = gearcam.load(PLATE)
     wave = "8*exp(3*(cos(theta) - 1))"

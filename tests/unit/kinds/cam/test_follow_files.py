@@ -8,15 +8,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import gearcam
 from gearcam.base.errors import DesignError
 from gearcam.kinds.cam.result import CamResult
+from helpers_built import built
 from helpers_files import table
 from helpers_pairs import PROFILES
 
 
 def made(name: str) -> CamResult:
-    return gearcam.build(gearcam.load(PROFILES / f"{name}.toml"))
+    return built(PROFILES / f"{name}.toml")
 
 
 @pytest.mark.parametrize("file", ["profile.csv", "cam.dxf"])

@@ -64,7 +64,8 @@ def test_the_groove_of_two_rollers_has_a_step(radius2: float) -> None:
     assert set(result.files("tool-path")) >= {"tool_path_relief.csv", "tool_path_inner.dxf"}
 
 
-@pytest.mark.parametrize("side", [pytest.param("front", marks=pytest.mark.slow), "back"])
+@pytest.mark.slow
+@pytest.mark.parametrize("side", ["front", "back"])
 def test_step_holds_the_groove(side: str) -> None:
     result = gearcam.build(read(FILE, PLAIN, ('"front"', f'"{side}"')))
     (solid,) = read_step(result.files("step")["cam.step"])

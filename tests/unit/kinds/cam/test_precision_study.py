@@ -201,7 +201,7 @@ def test_the_command_takes_tolerances(tmp_path: Path, capsys: pytest.CaptureFixt
 
 
 def test_without_tolerances_the_largest_sensitivities_are_told() -> None:
-    result = gc.build(gc.load("profiles/plate_cam_offset_roller.toml"))
+    result = built("profiles/plate_cam_offset_roller.toml")
     study = result.study("precision")
     told = [one.meaning for one in study.facts.shown() if one.name.startswith("precision")]
     assert "largest sensitivity to offset" in told

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from itertools import pairwise, product
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -132,7 +132,7 @@ def evolved(cost: Any, bounds: list[tuple[float, float]]) -> float:
 CASES = [*((stem, name) for name in PROGRAMS), *((arm, name) for name in PROGRAMS)]
 
 
-@pytest.mark.parametrize(("make", "name"), few(CASES, 7))
+@pytest.mark.parametrize(("make", "name"), chosen(CASES, (arm, "polynomial")))
 def test_no_other_optimiser_finds_a_smaller_cam(make: Any, name: str) -> None:
     result = built(gc.design(make(name)))
     found = result.solution
@@ -182,7 +182,7 @@ KNOWN = [
 ]
 
 
-@pytest.mark.parametrize("known", few(((one,) for one in KNOWN), 2))
+@pytest.mark.parametrize("known", few(((one,) for one in KNOWN), 3))
 def test_a_cam_that_is_known_to_keep_its_limits_is_not_smaller_than_the_solution(
     known: tuple[str, float, float, float, float, float, float],
 ) -> None:
@@ -289,10 +289,12 @@ def least_base(program: Any, radius: float) -> float:
     return radius - float(min((s + second).min(), at_ends.min()))
 
 
-@pytest.mark.parametrize("first", few(range(0, 400, 10), 40))
-def test_base_radii_of_random_flat_followers_are_the_closed_form(first: int) -> None:
+@pytest.mark.parametrize(
+    "numbers", chosen([range(4), *(range(k, k + 10) for k in range(0, 400, 10))], range(4))
+)
+def test_base_radii_of_random_flat_followers_are_the_closed_form(numbers: range) -> None:
     met = 0
-    for number in range(first, first + 10):
+    for number in numbers:
         document = flat(number)
         result = gc.build(gc.design(document))
         if falls(Task(result).program):
@@ -302,10 +304,10 @@ def test_base_radii_of_random_flat_followers_are_the_closed_form(first: int) -> 
             met += 1
             wanted = least_base(result.program, document["limits"]["profile_radius_mm"])
             assert found.sizes["cam.base_radius_mm"] == pytest.approx(wanted, rel=1e-5), number
-    assert met > 2
+    assert met > len(numbers) // 5
 
 
-@pytest.mark.parametrize("number", few(range(24), 8))
+@pytest.mark.parametrize("number", chosen(range(24), 8))
 def test_no_smaller_swinging_flat_cam_keeps_its_limits(number: int) -> None:
     """By the checks of the cams themselves."""
     document = flat(number, "deg", motion="oscillating", pivot_distance_mm=80.0)
@@ -454,7 +456,7 @@ def test_a_range_of_one_value_is_that_value() -> None:
     assert "prime_radius_mm at its bound 52 mm" in found.deciding
 
 
-@pytest.mark.parametrize("radius", ["solve", 35.0, 90.0])
+@pytest.mark.parametrize("radius", few(["solve", 35.0, 90.0], 3))
 def test_the_range_that_an_arm_needs_is_named_and_works(radius: Any) -> None:
     document = arm("polynomial", cam={"prime_radius_mm": radius})
     document["follower"]["arm_mm"] = "solve"
@@ -512,6 +514,7 @@ def test_a_refused_solution_is_told_without_other_remedies(
 BOUNDS = {"prime_radius_mm": [20, 30]}
 
 
+@pytest.mark.slow
 def test_a_wall_that_has_to_give_is_named_and_can_be_kept() -> None:
     document = stem("cycloidal", bounds={"prime_radius_mm": [25, 45]}, limits={"wall_mm": 9})
     document["blank"] = {"bore_diameter_mm": 70}
@@ -602,7 +605,9 @@ def test_the_base_radius_of_a_face_under_a_contact_pressure_is_the_closed_form()
     assert result.solution.deciding == ("contact pressure",)
 
 
-@pytest.mark.parametrize("ends", few([([30.001, 30.002],), ([0.0, 100.0],), ([100.0, 100.001],)]))
+@pytest.mark.parametrize(
+    "ends", few([([30.001, 30.002],), ([0.0, 100.0],), ([100.0, 100.001],)], 3)
+)
 def test_a_load_between_two_angles_is_seen_at_its_ends(ends: list[float]) -> None:
     """A short one, at its ends; and one that ends where a phase does."""
     document = stem("cycloidal", cam={"base_radius_mm": "solve", "thickness_mm": 12.0})
@@ -626,13 +631,9 @@ FRICTION = {
 INCLINED = {"gravity": {"direction_deg": -60}}
 
 
-@pytest.mark.parametrize(
-    ("kind", "gravity"),
-    chosen(
-        product(("stem", "arm", "dome", "swinging face"), ({}, INCLINED)),
-        ("swinging face", INCLINED),
-    ),
-)  # fmt: skip
+@pytest.mark.slow
+@pytest.mark.parametrize("gravity", [{}, INCLINED])
+@pytest.mark.parametrize("kind", ["stem", "arm", "dome", "swinging face"])
 def test_the_contact_pressure_of_a_solved_cam_is_at_its_limit(
     kind: str, gravity: dict[str, Any]
 ) -> None:
@@ -690,6 +691,7 @@ def test_a_contact_pressure_that_has_to_give_is_named_and_works() -> None:
     assert not gc.build(gc.design(document)).findings
 
 
+@pytest.mark.slow
 def test_a_finding_about_contact_pressure_names_the_cam_that_keeps_it() -> None:
     document = loaded(stem("cycloidal"), 450.0)
     document["follower"]["offset_mm"] = 2.0

@@ -10,6 +10,7 @@ import pytest
 
 import gearcam as gc
 from gearcam.base.errors import DesignError, InfeasibleError
+from helpers_built import built
 from helpers_pairs import PROFILES
 
 FOUR_BAR: Any = gc.load(PROFILES / "four_bar.toml")
@@ -81,7 +82,7 @@ def test_a_slide_and_a_later_drive_take_no_keys_in_vain() -> None:
 
 
 def test_motion_is_not_given_beyond_an_open_range() -> None:
-    door = gc.build(gc.load(PROFILES / "furnace_door_hinged.toml"))
+    door = built(PROFILES / "furnace_door_hinged.toml")
     assert len(door.output("door.angle", [0.0, math.radians(171.65)])) > 1
     with pytest.raises(DesignError, match="beyond the master's range"):
         door.output("door.angle", [3.0])

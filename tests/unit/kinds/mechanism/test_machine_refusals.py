@@ -400,6 +400,7 @@ def test_what_cannot_be_is_refused_with_its_place(name: str, tmp_path: Path) -> 
     assert (caught.value.where, caught.value.what) == (where, what)
 
 
+@pytest.mark.slow
 def test_remedies_of_a_ring_are_found_in_its_machine() -> None:
     ring = {
         "kind": "gear-pair", "name": "wheels",
@@ -500,7 +501,7 @@ def _refused_ones() -> list[Any]:
     return made
 
 
-@pytest.mark.parametrize("number", few(range(24), 3))
+@pytest.mark.parametrize("number", few(range(24), 5))
 def test_the_range_that_is_told_is_the_one_in_which_it_closes(number: int) -> None:
     made = _refused_ones()[number]
     with pytest.raises(gc.InfeasibleError) as caught:
@@ -545,7 +546,7 @@ def _told(path: Path) -> gc.DesignError | gc.InfeasibleError | None:
     return None
 
 
-@pytest.mark.parametrize("number", [11, pytest.param(60, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("number", [4, pytest.param(60, marks=pytest.mark.slow)])
 def test_random_machines_are_built_or_refused_with_reasons(number: int, tmp_path: Path) -> None:
     """Campaigns of `make fuzz` build more."""
     ends = {"built": 0, "refused": 0, "wrong": 0}

@@ -17,6 +17,7 @@ import pytest
 import gearcam as gc
 from gearcam.base.errors import DesignError, InfeasibleError, Problem
 from gearcam.spatial.extremes import Spot
+from helpers_built import built as shared
 from helpers_machines import MACHINES, MOTOR, PAIR
 
 Document = dict[str, Any]
@@ -485,7 +486,7 @@ def test_tables_are_changed_by_their_numbers(key: str, allowed: str, hint: str) 
     ],
 )
 def test_all_drives_are_named(profile: str, called: str) -> None:
-    result = gc.build(gc.load(f"profiles/{profile}.toml"))
+    result = shared(f"profiles/{profile}.toml")
     assert result.facts.headline[0] == called
 
 

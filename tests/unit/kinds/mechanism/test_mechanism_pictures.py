@@ -318,7 +318,7 @@ def test_the_dxf_holds_the_paths_within_the_tolerance(tolerance: float) -> None:
         (line,) = layers(result)[f"{name}_PATH"]
         assert line.closed
         points = np.array([x + 1j * y for x, y in line.get_points("xy")])
-        q = np.linspace(0.0, math.tau, 20001)
+        q = np.linspace(0.0, math.tau, 8001)
         true = result.linkage.track(name, q, 0).c[0]
         off = shapely.distance(ring(points), shapely.points(as_pairs(true)))
         assert off.max() <= tolerance
