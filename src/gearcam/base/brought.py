@@ -88,6 +88,9 @@ class Open(Collection[str]):
     def __len__(self) -> int:
         return sum(1 for _ in self)
 
+    def __bool__(self) -> bool:
+        return bool(self._known()) or len(self) > 0
+
 
 class Words(Open):
     """The words that a key may be.
@@ -106,9 +109,6 @@ class Words(Open):
 
     def __repr__(self) -> str:
         return cut(f"<{type(self).__name__} {', '.join(self._words)}>")
-
-    def __bool__(self) -> bool:
-        return bool(self._words) or len(self) > 0
 
     def _known(self) -> Collection[str]:
         return self._words

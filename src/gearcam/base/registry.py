@@ -13,6 +13,7 @@ from types import MappingProxyType
 from typing import Any, Generic, Protocol, TypeVar
 
 from gearcam.base.brought import Open, brought, load_brought
+from gearcam.base.display import cut
 
 
 class Named(Protocol):
@@ -25,6 +26,7 @@ class Named(Protocol):
 
 
 E = TypeVar("E", bound=Named)
+V = TypeVar("V")
 
 
 class Registry(Open, Mapping[str, E], Generic[E]):
@@ -82,7 +84,33 @@ def _call(place: str, /, *arguments: Any, **named: Any) -> Any:
     return _imported(place)(*arguments, **named)
 
 
-class DeferredMapping(Open, Mapping[str, Any]):
+class OpenMapping(Open, Mapping[str, V], Generic[V]):
+    """A mapping to which other packages may add.
+
+    Parameters
+    ----------
+    own : mapping of str to object
+        What is known here, by name.
+    group : str
+        Group of what packages bring besides; empty if they cannot.
+    """
+
+    def __init__(self, own: Mapping[str, V] = MappingProxyType({}), group: str = "") -> None:
+        self.own = own
+        self._group = group
+
+    def __repr__(self) -> str:
+        return cut(f"<{type(self).__name__} {', '.join(self._known())}>")
+
+    def __getitem__(self, name: str) -> V:
+        known = self._known()
+        return known[name] if name in known else load_brought(self._group, name)
+
+    def _known(self) -> Mapping[str, V]:
+        return self.own
+
+
+class DeferredMapping(OpenMapping[Any]):
     """The mapping at a `place`, ``package.module:name``, imported when it is first used.
 
     Parameters
@@ -94,15 +122,11 @@ class DeferredMapping(Open, Mapping[str, Any]):
     """
 
     def __init__(self, place: str, group: str = "") -> None:
+        super().__init__(group=group)
         self._place = place
-        self._group = group
 
     def __repr__(self) -> str:
         return f"<{self._place}>"
-
-    def __getitem__(self, name: str) -> Any:
-        known = self._known()
-        return known[name] if name in known else load_brought(self._group, name)
 
     def _known(self) -> Mapping[str, Any]:
         return _imported(self._place)

@@ -21,11 +21,11 @@ from typing import Any, Final, Protocol, get_args, get_type_hints
 from gearcam.base.brought import brought, group_of, load_brought
 from gearcam.base.findings import CHECKS
 from gearcam.base.quantities import params_of
+from gearcam.base.registry import OpenMapping
 from gearcam.base.rules import Rule
 from gearcam.designs.faults import Fault
 from gearcam.designs.lines import Path
 from gearcam.designs.nodes import Circumstances, Keys, Many, Node, choices_in, tables_in
-from gearcam.designs.outputs import OutputSpec
 from gearcam.designs.slips import cam_of, keyed, nearest
 from gearcam.designs.table import Key, Table, table_of
 
@@ -174,6 +174,8 @@ class DesignKind:
         ``circumstances(document)`` returns what the units of its keys depend on.
     variants : Variants, optional
         What decides on the keys of some tables.
+    studies : mapping of str to Study
+        Studies by name; each is a command, too (see `gearcam.results.kind`).
     required : tuple of str
         Titles of tables that a file must have.
     rules : tuple of Rule
@@ -208,6 +210,7 @@ class DesignKind:
     nodes: Mapping[str, Node] = field(default_factory=dict)
     circumstances: Callable[[Mapping[str, Any]], Circumstances] = lambda _: {}
     variants: Variants | None = None
+    studies: OpenMapping[Any] = field(default_factory=OpenMapping)
     required: tuple[str, ...]
     rules: tuple[Rule, ...] = ()
     problems: Callable[[Mapping[str, Any], Examined], Iterable[Fault]] = lambda *_: ()
@@ -296,9 +299,8 @@ class DesignKind:
     @property
     def study_tables(self) -> Mapping[str, str]:
         """Titles of the tables with the settings of studies, by the names of the studies."""
-        output: type[OutputSpec] = self.tables["output"]
-        settings = (title for title in self.added if title not in self.several)
-        return {**output.study_tables, **{title: title for title in settings}}
+        own = {name: one.table for name, one in self.studies.own.items()}
+        return own | {title: title for title in self.added if title not in self.several}
 
     def meant(self, document: Mapping[str, Any]) -> DesignKind:
         """Return the kind that a `document` of this kind is of: another one for some variants."""

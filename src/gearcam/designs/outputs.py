@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection
 from dataclasses import dataclass
-from typing import Any, ClassVar, Final
+from typing import Any, Final
 
 from gearcam.base.brought import Words, group_of
 from gearcam.base.display import ShortRepr
@@ -30,10 +30,9 @@ def files_param(formats: tuple[str, ...], kind: str) -> Any:
     return param(TEXT, default=("csv",), choices=words, doc=_FILES)
 
 
-def studies_param(tables: Mapping[str, str], kind: str) -> Any:
-    """Return the field of a `kind`'s studies to include, any of those with some `tables`."""
-    words = Words(tuple(tables), group_of(kind, "studies"))
-    return param(TEXT, default=(), choices=words, doc=_STUDIES)
+def studies_param(studies: Collection[str]) -> Any:
+    """Return the field of the studies to include, any of those of a kind."""
+    return param(TEXT, default=(), choices=studies, doc=_STUDIES)
 
 
 def pose_param(word: str, doc: str) -> Any:
@@ -59,11 +58,8 @@ class OutputSpec(ShortRepr):
         How outlines are drawn, and the version of the files.
     """
 
-    study_tables: ClassVar[Mapping[str, str]] = {}
-    """Titles of the tables with the settings of studies, by the names of the studies."""
-
     files: tuple[str, ...] = param(TEXT, default=("csv",), choices=FORMATS, doc=_FILES)
-    studies: tuple[str, ...] = param(TEXT, default=(), choices=(), doc=_STUDIES)
+    studies: tuple[str, ...] = studies_param(())
     chord_tolerance: float | None = param(
         LENGTH,
         default=None,

@@ -11,8 +11,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final, cast
 
+from gearcam.base.brought import group_of
 from gearcam.base.facts import Facts
-from gearcam.base.registry import deferred
+from gearcam.base.registry import OpenMapping, deferred
 from gearcam.designs import kind as reading
 from gearcam.designs.kind import DesignKind
 
@@ -99,6 +100,11 @@ class Study:
         return f'<Study "{self.name}">'
 
 
+def studies_of(kind: str, *studies: Study) -> OpenMapping[Study]:
+    """Return the studies of a `kind` of design by name, to which packages may add."""
+    return OpenMapping({one.name: one for one in studies}, group_of(kind, "studies"))
+
+
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Kind(DesignKind):
     """A kind of design with all that it does (the other parameters are those of `DesignKind`).
@@ -115,8 +121,6 @@ class Kind(DesignKind):
         ``scene(result, places)`` returns the moving parts at so many positions of the driver.
     advice : callable
         ``advice()`` returns how remedies are searched for (see `gearcam.results.advice.Advice`).
-    studies : mapping of str to Study
-        Studies by name; each is a command, too.
     ladders : mapping of str to callable
         Stages at increasing resolution (see `gearcam.results.ladders`).
     public : mapping of str to type
@@ -130,7 +134,7 @@ class Kind(DesignKind):
     charts: Mapping[str, ChartMaker] = field(default_factory=dict)
     scene: Callable[[Any, int], Scene | None] = lambda *_: None
     advice: Callable[[], Any] = _PLAIN_ADVICE
-    studies: Mapping[str, Study] = field(default_factory=dict)
+    studies: OpenMapping[Study] = field(default_factory=OpenMapping)
     ladders: Mapping[str, Callable[[Any], Any]] = field(default_factory=dict)
     public: Mapping[str, type] = field(default_factory=dict)
     cut: bool = True

@@ -75,7 +75,7 @@ class Staged(NotebookView):
     @property
     def rows(self) -> TableRows:
         """The rows of the tables of the design."""
-        return TableRows(self.design, oscillating=False)
+        return TableRows(design=self.design)
 
     @cached_property
     def design_hash(self) -> str:

@@ -5,9 +5,11 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gearcam.base.display import ShortRepr
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.facts import Fact
 from gearcam.base.findings import Finding
@@ -16,7 +18,8 @@ if TYPE_CHECKING:
     from gearcam.laws.columns import Given
 
 
-class TableRows:
+@dataclass(frozen=True, eq=False, kw_only=True)
+class TableRows(ShortRepr):
     """The rows of the tables of a design.
 
     Parameters
@@ -27,10 +30,14 @@ class TableRows:
         Whether lifts are angles, or mm.
     """
 
-    def __init__(self, design: Any, *, oscillating: bool) -> None:
-        self._design, self._oscillating = design, oscillating
+    design: Any
+    oscillating: bool = False
+
+    @property
+    def _tables(self) -> list[Any]:
+        """The tables of the design."""
         columns = sys.modules.get("gearcam.laws.columns")  # loaded if a design has a table
-        self._tables: list[Any] = [*columns.tables_in(design)] if columns else []
+        return [*columns.tables_in(self.design)] if columns else []
 
     @property
     def notes(self) -> list[Fact]:
@@ -41,11 +48,11 @@ class TableRows:
     @property
     def given(self) -> list[tuple[str, Given]]:
         """The rows that should lie on curves, with the keys of what they belong to."""
-        if all(table.given(oscillating=self._oscillating) is None for table in self._tables):
+        if all(table.given(oscillating=self.oscillating) is None for table in self._tables):
             return []
         from gearcam.laws.row_checks import given_in
 
-        return [*given_in(self._design, oscillating=self._oscillating)]
+        return [*given_in(self.design, oscillating=self.oscillating)]
 
     @property
     def findings(self) -> tuple[Finding, ...]:

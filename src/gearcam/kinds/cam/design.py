@@ -33,6 +33,7 @@ from gearcam.kinds.cam.motion import MOTION, circumstances
 from gearcam.kinds.cam.tables import (
     GOALS,
     NAME,
+    STUDIES,
     BoundsSpec,
     CamBlank,
     CamOutputSpec,
@@ -373,7 +374,7 @@ KIND: Final = Kind(
     charts=DeferredMapping(f"{_HERE}.drawn:CHARTS"),
     scene=deferred(f"{_HERE}.drawn:scene"),
     advice=deferred(f"{_HERE}.hints:CamAdvice"),
-    studies=DeferredMapping(f"{_HERE}.studies:STUDIES", group_of(NAME, "studies")),
-    ladders=DeferredMapping(f"{_HERE}.studies:LADDERS"),
+    studies=STUDIES,
+    ladders=DeferredMapping(f"{_HERE}.ladders:LADDERS"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
 )

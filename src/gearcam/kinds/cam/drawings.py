@@ -134,18 +134,18 @@ def follower(motion: PitchMotion, theta: float, reach: float) -> list[Shape]:
     list of Shape
         In the fixed frame.
     """
-    touching, side = motion.follower, -1.0 if motion.clockwise else 1.0
+    touching, hand = motion.follower, motion.hand
     position = touching.start + float(motion.program.derivatives(theta, 0)[0])
     reach = 1.2 * reach
 
     def path(*points: complex) -> Path:
-        return Path(points=np.array([complex(side * z.real, z.imag) for z in points]), closed=False)
+        return Path(points=np.array([complex(hand * z.real, z.imag) for z in points]), closed=False)
 
     found = motion.contact_place
     wide = 0.2 * reach + (found.largest if found is not None else 0.0)
     lines, discs = touching.symbol(position, reach, wide)
     circles = [
-        Circle(center=complex(side * center.real, center.imag), diameter=2.0 * radius)
+        Circle(center=complex(hand * center.real, center.imag), diameter=2.0 * radius)
         for center, radius in discs
     ]
     return [*circles, *(path(*line) for line in lines)]

@@ -119,7 +119,6 @@ def _columns(result: CamResult, loaded: Loaded, width: Array) -> dict[str, Array
     x, statics, pressure = loaded.x, loaded.statics, loaded.pressure
     driver, drive, motion = result.driver, result.design.drive, result.cam.motions[0]
     (load_scale, _, suffix), (effort, scale) = result.follower.load_unit, drive.effort
-    sign = -1.0 if motion.clockwise else 1.0
     columns = {
         driver.column: driver.scale * x,
         **({} if loaded.way is None else {"direction": loaded.way.astype(int)}),
@@ -127,7 +126,7 @@ def _columns(result: CamResult, loaded: Loaded, width: Array) -> dict[str, Array
         "normal_n": statics.force,
         "wall": statics.carrying + 1,
         **{
-            name: (sign if name in _MIRRORED else 1.0) * values
+            name: (motion.hand if name in _MIRRORED else 1.0) * values
             for name, values in statics.reactions.items()
         },
         "bearing_n": np.abs(statics.bearing),

@@ -69,7 +69,7 @@ class MadeCam(PartsResult):
     @property
     def rows(self) -> TableRows:
         """The rows of the tables of the design (see `Staged`)."""
-        return TableRows(self.design, oscillating=self.design.follower.oscillating)
+        return TableRows(design=self.design, oscillating=self.design.follower.oscillating)
 
     @property
     def follower(self) -> Follower:

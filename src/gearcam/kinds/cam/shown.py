@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from gearcam.kinds.cam.result import CamResult
     from gearcam.laws.program import Program
     from gearcam.numeric.arrays import Array
-    from gearcam.numeric.contour import Contour
 
 _DERIVATIVES: Final = ("velocity", "acceleration", "jerk")
 
@@ -70,9 +69,9 @@ def _solution(result: CamResult) -> Tree | None:
     found = result.solution
     if found is None:
         return None
-    sizes = {key.split(".")[1]: (key, value) for key, value in found.sizes.items()}
     tree: Tree = {
-        name: Fact(value, f"{key}, solved", shown=True) for name, (key, value) in sizes.items()
+        key.split(".")[1]: Fact(value, f"{key}, solved", shown=True)
+        for key, value in found.sizes.items()
     }
     if found.deciding:
         tree["decided_by"] = Fact(", ".join(found.deciding), "decided by", shown=True)
@@ -142,9 +141,6 @@ def _part(result: CamResult) -> Tree | list[Tree]:
     return parts if several else parts[0]
 
 
-_SHORT: Final = {"lift": "s", "velocity": "ds", "acceleration": "d2s", "jerk": "d3s"}
-"""What the file calls the lift and its derivatives, by the first words of their columns."""
-
 _STUDY: Final = (90, 180, 360, 720, 1440, 2880, 5760)
 """Points of a turn whose three-point curvature is held against the exact one."""
 
@@ -161,19 +157,14 @@ def _tables(result: CamResult, _: Measured) -> Files:
     """
     from gearcam.export.table import outline_bytes, table_bytes
 
-    columns = {_short(name): values for name, values in result.motion().items()}
+    table = result.motion()
+    short = dict(zip([*table][1:5], ("s", "ds", "d2s", "d3s"), strict=True))
+    motion = {short.get(name, name): values for name, values in table.items()}
     walls = zip(result.cam.walls, result.contours, strict=True)
     return {
         **{f"profile{wall.ending}.csv": outline_bytes(made.points) for wall, made in walls},
-        "motion.csv": table_bytes(columns),
+        "motion.csv": table_bytes(motion),
     }
-
-
-def _short(name: str) -> str:
-    """Return the name in the file of a column of the motion; those by time keep theirs."""
-    what, _, unit = name.partition("_")
-    by_time = unit.partition("_")[2].startswith("s")
-    return name if by_time else _SHORT.get(what, name)
 
 
 def _inspection(result: CamResult, _: Measured) -> Files:
@@ -188,22 +179,18 @@ def _inspection(result: CamResult, _: Measured) -> Files:
     """
     from gearcam.export.table import table_bytes
 
-    count = result.design.output.inspection_points
-    walls = zip(result.cam.walls, result.profiles, strict=True)
-    return {
-        f"inspection{wall.ending}.csv": table_bytes(_inspected(result, wall, profile, count))
-        for wall, profile in walls
-    }
+    walls = result.cam.walls
+    return {f"inspection{wall.ending}.csv": table_bytes(_inspected(result, wall)) for wall in walls}
 
 
-def _inspected(result: CamResult, wall: Wall, profile: Contour, count: int) -> dict[str, Array]:
-    theta, points, normals = wall.places(count)
-    driver = wall.carrier.driver
-    clearance = result.design.blank.clearance
+def _inspected(result: CamResult, wall: Wall) -> dict[str, Array]:
+    """Return the columns of the points for inspection of a wall."""
+    theta, points, normals = wall.places(result.design.output.inspection_points)
+    driver, clearance = wall.carrier.driver, result.design.blank.clearance
     if clearance:
         from gearcam.parts.parallel import touches
 
-        kept = touches(profile, points, normals, -clearance)
+        kept = touches(wall.contour, points, normals, -clearance)
         theta, points, normals = theta[kept], points[kept], normals[kept]
         points = points - clearance * normals
     return {

@@ -146,18 +146,9 @@ class UnderLoad:
 
     def statics(self, x: Array, way: Array) -> Statics:
         """Return the forces at positions `x` of the driver, and each `way`."""
-        design, loads = self.result.design, self.loads
-        motion = loads.motion(x, way)
-        return solve(
-            self.result.cam.touches,
-            loads.support,
-            x,
-            motion.ds,
-            loads.total_load(motion),
-            design.friction,
-            partial(design.follower.dragged, design.friction),
-            way,
-        )
+        design = self.result.design
+        dragged = partial(design.follower.dragged, design.friction)
+        return solve(self.result.cam.touches, self.loads, self.loads.motion(x, way), dragged)
 
     def pressure(self, statics: Statics) -> Array:
         """Return the contact pressure, MPa; infinite where an edge of cam or follower carries."""

@@ -10,14 +10,11 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from gearcam.base.findings import run_checks
-from gearcam.base.registry import deferred
 from gearcam.gears.pair import COARSEST, FINEST, FLANK_POINTS, make_gear
 from gearcam.gears.track import WHEELS
-from gearcam.kinds.shared import accuracy_study
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.piecewise import Piecewise
 from gearcam.numeric.sampling import Sampler
-from gearcam.results.kind import Study
 from gearcam.results.ladders import (
     CHORD_ORDER,
     COARSER,
@@ -45,7 +42,7 @@ _CLOSE: Final = 1e-9
 """Driver angles closer than this, degrees, are the same."""
 
 
-def _mesh(result: GearPairResult, progress: Progress) -> StudyResult:
+def study_mesh(result: GearPairResult, progress: Progress) -> StudyResult:
     """Return the meshing of a pair as mounted; incomplete if it was interrupted."""
     from gearcam.kinds.gear_pair.shown import meshing_facts
     from gearcam.meshing.checks import KIND
@@ -64,7 +61,7 @@ def _mesh(result: GearPairResult, progress: Progress) -> StudyResult:
     done = f"{len(meshing.phi1)} of {meshing.asked} steps"
     return StudyResult(
         result=result,
-        study=MESH,
+        study=result.kind.studies["mesh"],
         file="meshing.csv",
         table=meshing.columns,
         group=meshing_facts(numbers(meshing)),
@@ -188,32 +185,6 @@ def _at_places(
     chosen = np.concatenate(rows).astype(int)
     start = np.cumsum([0, *map(len, rows)])
     return {"as mounted": ContactPoints(start=start, point=point[chosen], force=force[chosen])}
-
-
-MESH: Final = Study(
-    name="mesh",
-    key="meshing",
-    doc="Study the meshing of gear pairs step by step; write DIR/NAME/meshing.csv.",
-    done="meshed",
-    table="meshing",
-    compute=_mesh,
-    options={"center_distance_mm": "center"},
-    repeats=("contact-ratio",),  # the study checks the drive as mounted
-)
-
-
-ERRORS: Final = Study(
-    name="errors",
-    key="errors",
-    doc="Study errors of mounting and making of gear pairs; write DIR/NAME/errors.csv.",
-    done="studied",
-    table="errors",
-    compute=deferred("gearcam.kinds.gear_pair.errors:study_errors"),
-    options={"eccentricity_deg": "eccentricity-angle", "file": "pitch"},
-)
-
-STUDIES: Final[dict[str, Study]] = {one.name: one for one in (MESH, ERRORS, accuracy_study())}
-"""The studies by name."""
 
 
 _FLANKS: Final = (2, 3, 5, 9, FLANK_POINTS, 33, 65, 129)

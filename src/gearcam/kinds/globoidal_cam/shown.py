@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -23,6 +24,7 @@ from gearcam.kinds.gridded_shown import (
 )
 from gearcam.laws.phases_of_lift import TURN
 from gearcam.report.file import report_files
+from gearcam.results.ladders import Ladders, grid_ladder
 from gearcam.spatial.globoidal_checks import KIND
 from gearcam.spatial.globoidal_surface import outer_radius
 
@@ -134,3 +136,7 @@ FILES: Final[Mapping[str, Callable[..., Files]]] = {
     "report": report_files,
 }
 """What makes the files of each format: contents by name."""
+
+
+LADDERS: Final[Ladders] = {"solid": partial(grid_ladder, least=72, finer=False)}
+"""What `gearcam accuracy` can measure: the solid, from 72 cam angles on."""

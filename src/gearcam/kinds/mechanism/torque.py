@@ -23,12 +23,10 @@ from gearcam.kinds.mechanism.loaded import BODY, work_of
 from gearcam.kinds.mechanism.names import acting, several, tables_of
 from gearcam.kinds.mechanism.parts import ACTIONS
 from gearcam.kinds.mechanism.parts.action import MachineAction
-from gearcam.kinds.shared import accuracy_study
 from gearcam.linkages.efforts import GRAVITY, PARTS, SPRINGS, InertiaForce
 from gearcam.linkages.measures import Peak
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Limit, Line
-from gearcam.results.kind import Study
 from gearcam.results.study import StudyResult
 
 if TYPE_CHECKING:
@@ -71,8 +69,13 @@ EVEN: Final = "even_shaft"
 """What a mechanism behind a pair is compared with if the design does not say."""
 
 
-def _demand(design: Any) -> None:
+def demand(design: Any) -> None:
     """Refuse a design on which nothing acts, or in which a speed is missing.
+
+    Parameters
+    ----------
+    design : MechanismDesign
+        The design.
 
     Raises
     ------
@@ -240,7 +243,7 @@ def study_torque(result: MechanismResult, progress: Progress | None) -> StudyRes
     InfeasibleError
         If the mechanism does not close, or a load is not finite.
     """
-    _demand(result.design)
+    demand(result.design)
     even = None if result.design.compare else result.without_pair
     others = result.compared if even is None else {EVEN: even}
     if progress is not None:
@@ -269,7 +272,7 @@ def study_torque(result: MechanismResult, progress: Progress | None) -> StudyRes
         columns["power_w"] = columns["torque_nm"] * result.speed
     return StudyResult(
         result=result,
-        study=TORQUE,
+        study=result.kind.studies["torque"],
         file="torque.csv",
         table=columns,
         group=_facts(result, work, beside, shafts, ends),
@@ -516,18 +519,3 @@ def _charts(
     if len(parts) > 1:
         charts["torque_parts"] = chart("What the driver's moment is made of", parts)
     return charts
-
-
-TORQUE: Final = Study(
-    name="torque",
-    key="torque",
-    doc="Compute the driver's moment under loads, masses and springs; write DIR/NAME/torque.csv.",
-    done="computed",
-    table="torque",
-    compute=study_torque,
-    demand=_demand,
-    repeats=("loads-unused",),  # it uses them
-)
-
-STUDIES: Final[dict[str, Study]] = {one.name: one for one in (TORQUE, accuracy_study())}
-"""The studies by name."""

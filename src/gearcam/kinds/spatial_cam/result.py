@@ -126,7 +126,7 @@ class SpatialCamResult(GriddedCam):
     @property
     def rows(self) -> TableRows:
         """The rows of the tables of the design (see `Staged`)."""
-        return TableRows(self.design, oscillating=self.design.follower.oscillating)
+        return TableRows(design=self.design, oscillating=self.design.follower.oscillating)
 
     @cached_property
     def checked(self) -> tuple[Finding, ...]:

@@ -205,9 +205,8 @@ class Conjugate(Plates[ConjugateCam, ConjugateSpec, ConjugateFollower]):
         pose, reach = self.output.pose, max(wall.contour.reach for wall in cam.walls)
         plates, others = [], []
         for part, wall, prime in zip(parts, cam.walls, self.primes(cam), strict=True):
-            side = -1.0 if wall.clockwise else 1.0
             shapes = follower(wall, pose, reach)
-            for feature in plate(part, wall, prime, shapes, angle=side * pose).features:
+            for feature in plate(part, wall, prime, shapes, angle=wall.hand * pose).features:
                 if feature.layer in (CENTER, FOLLOWER):
                     others.append(feature)
                 else:

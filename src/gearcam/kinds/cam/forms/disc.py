@@ -89,9 +89,8 @@ class Plates(Form[C, S, F]):
         from gearcam.kinds.cam.drawings import follower, plate
 
         (part,), (wall,), (prime,), pose = parts, cam.walls, self.primes(cam), self.output.pose
-        side = -1.0 if wall.clockwise else 1.0
         shapes = follower(wall, pose, wall.contour.reach)
-        return plate(part, wall, prime, shapes, angle=side * pose)
+        return plate(part, wall, prime, shapes, angle=wall.hand * pose)
 
     def primes(self, cam: C) -> tuple[float, ...]:
         """Return the radius of each prime circle, for a flat follower of its base circle, mm."""

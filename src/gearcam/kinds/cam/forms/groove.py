@@ -191,8 +191,7 @@ class Groove(Form[GrooveCam, GrooveSpec, GrooveFollower]):
 
         motion, (part,), pose = cam.motion, parts, self.output.pose
         shapes = follower(motion, pose, part.contour.reach)
-        side = -1.0 if motion.clockwise else 1.0
-        return grooved(part, cam.walls, shapes, angle=side * pose)
+        return grooved(part, cam.walls, shapes, angle=motion.hand * pose)
 
     def paths(self, cam: GrooveCam, parts: Parts) -> Mapping[str, Contour]:  # noqa: ARG002
         """Return the pitch curve, or a path along each wall (see `Form.paths`)."""

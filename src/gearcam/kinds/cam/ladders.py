@@ -1,4 +1,4 @@
-"""Studies of cams: motion on a given profile, errors of tolerances, stages at rising resolution."""
+"""Stages of cams at rising resolution (`gearcam.results.ladders`)."""
 
 from __future__ import annotations
 
@@ -8,14 +8,11 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.base.registry import deferred
 from gearcam.cams.three_points import three_point_curvature
 from gearcam.kinds.cam.curvature import curvature_at, pitch_points
 from gearcam.kinds.cam.given_profile import followed
-from gearcam.kinds.shared import accuracy_study
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.sampling import Sampler
-from gearcam.results.kind import Study
 from gearcam.results.ladders import (
     CHORD_ORDER,
     Ladder,
@@ -28,50 +25,6 @@ from gearcam.results.ladders import (
 
 if TYPE_CHECKING:
     from gearcam.kinds.cam.result import CamResult
-
-_HERE: Final = "gearcam.kinds.cam"
-
-FOLLOW: Final = Study(
-    name="follow",
-    key="followed",
-    doc="Compute the follower motion on a given profile; write DIR/NAME/followed.csv. With --fit "
-    "find the design that moves like this; write DIR/NAME/fitted.toml too.",
-    done="followed",
-    table="follow",
-    compute=deferred(f"{_HERE}.given_profile:study_follow"),
-    argument="file",
-    metavar="PROFILE",
-    demand=deferred(f"{_HERE}.given_profile:demand"),
-    many=False,
-)
-
-
-PRECISION: Final = Study(
-    name="precision",
-    key="precision",
-    doc="Compute how errors of sizes move the follower; write DIR/NAME/precision.csv.",
-    done="studied",
-    table="precision",
-    options={"lift_error_deg": "swing-error"},
-    compute=deferred(f"{_HERE}.precision:study_precision"),
-)
-
-
-FORCES: Final = Study(
-    name="forces",
-    key="forces",
-    doc="Compute forces, torque, efficiency and contact pressure; write DIR/NAME/forces.csv.",
-    done="computed",
-    table="forces",
-    compute=deferred(f"{_HERE}.forces:study_forces"),
-    demand=deferred(f"{_HERE}.under_load:demand"),
-)
-
-STUDIES: Final[dict[str, Study]] = {
-    one.name: one for one in (FOLLOW, FORCES, PRECISION, accuracy_study())
-}
-"""The studies by name."""
-
 
 _COUNTS: Final = (45, 90, 180, 360, 720, 1440, 2880, 5760)
 """Points of a turn for three-point curvature."""
