@@ -200,14 +200,13 @@ def test_an_interruption_before_the_first_step_writes_nothing(
 
 
 def test_settings_from_python_meet_the_same_rules() -> None:
-    design = studied(
-        KINDS["gear-pair"].studies["mesh"], loads(TEXT), {"overclosure_deg": -0.5, "teeth": [3, 4]}
-    )
+    mesh = KINDS["gear-pair"].studies["mesh"]
+    design = studied(mesh, loads(TEXT), {"overclosure_deg": -0.5, "teeth": [3, 4]})
     assert design.meshing.overclosure == pytest.approx(math.radians(-0.5))
     assert design.meshing.teeth == (3, 4)
     assert design.meshing.steps == 12
     with pytest.raises(DesignError, match=r"meshing\.overclosure_deg"):
-        studied(KINDS["gear-pair"].studies["mesh"], design, {"overclosure_deg": 2})
+        studied(mesh, design, {"overclosure_deg": 2})
 
 
 def test_a_study_without_a_beginning_begins_at_zero() -> None:

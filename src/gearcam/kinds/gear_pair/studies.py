@@ -43,7 +43,24 @@ _CLOSE: Final = 1e-9
 
 
 def study_mesh(result: GearPairResult, progress: Progress) -> StudyResult:
-    """Return the meshing of a pair as mounted; incomplete if it was interrupted."""
+    """Return the meshing of a pair as mounted; incomplete if it was interrupted.
+
+    Parameters
+    ----------
+    result : GearPairResult
+        The pair.
+    progress : callable
+        Told of the steps done and their number.
+
+    Returns
+    -------
+    StudyResult
+
+    Raises
+    ------
+    InfeasibleError
+        If the wheels, or their meshing, are impossible.
+    """
     from gearcam.kinds.gear_pair.shown import meshing_facts
     from gearcam.meshing.checks import KIND
     from gearcam.meshing.numbers import numbers

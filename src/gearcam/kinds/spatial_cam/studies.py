@@ -22,7 +22,19 @@ if TYPE_CHECKING:
 
 
 def study_developed(result: SpatialCamResult, progress: Any) -> StudyResult:  # noqa: ARG001
-    """Return the errors of the developed plane."""
+    """Return the errors of the developed plane.
+
+    Parameters
+    ----------
+    result : SpatialCamResult
+        The cam.
+    progress : callable
+        Not told anything: it takes a moment.
+
+    Returns
+    -------
+    StudyResult
+    """
     settings = result.design.developed
     theta = np.linspace(0.0, 2.0 * math.pi, settings.steps, endpoint=False)
     cam = result.cam
