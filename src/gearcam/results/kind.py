@@ -121,6 +121,8 @@ class Kind(DesignKind):
         ``scene(result, places)`` returns the moving parts at so many positions of the driver.
     advice : callable
         ``advice()`` returns how remedies are searched for (see `gearcam.results.advice.Advice`).
+    studies : mapping of str to Study
+        Studies by name; each is a command, too.
     ladders : mapping of str to callable
         Stages at increasing resolution (see `gearcam.results.ladders`).
     public : mapping of str to type

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from gearcam.base.facts import Fact, Tree
 from gearcam.base.findings import run_checks
+from gearcam.base.numerals import formatted
 from gearcam.gears.pair import COARSEST, FINEST, FLANK_POINTS, make_gear
 from gearcam.gears.track import WHEELS
 from gearcam.numeric.arrays import Array, Plane
@@ -42,6 +44,26 @@ _CLOSE: Final = 1e-9
 """Driver angles closer than this, degrees, are the same."""
 
 
+_NOISE: Final = 1e-9
+"""Smaller lengths in a study, mm, are rounding."""
+
+_STUDIED: Final = {
+    "center_distance_mm": "centre distance as mounted",
+    "overclosure_deg": "overclosure of the driver",
+    "contact_ratio": "contact ratio",
+    "pairs_in_contact": "pairs in contact",
+    "interference_steps": "phases with interference",
+    "backlash_mm": "backlash along the pitch curve",
+    "lag_mm": "lag of the driven wheel, backlash taken up",
+    "penetration_mm": "penetration of flanks",
+    "chord_error_mm": "chord error of outlines",
+    "overlap_max_mm3": "largest overlap of two teeth",
+    "overlap_sum_mm3": "overlaps of all phases together",
+    "bearing_length_mm": "length over which a tooth bears",
+}
+"""Labels of the numbers of a study that are always shown."""
+
+
 def study_mesh(result: GearPairResult, progress: Progress) -> StudyResult:
     """Return the meshing of a pair as mounted; incomplete if it was interrupted.
 
@@ -61,7 +83,6 @@ def study_mesh(result: GearPairResult, progress: Progress) -> StudyResult:
     InfeasibleError
         If the wheels, or their meshing, are impossible.
     """
-    from gearcam.kinds.gear_pair.shown import meshing_facts
     from gearcam.meshing.checks import KIND
     from gearcam.meshing.numbers import numbers
     from gearcam.meshing.study import study
@@ -81,12 +102,43 @@ def study_mesh(result: GearPairResult, progress: Progress) -> StudyResult:
         study=result.kind.studies["mesh"],
         file="meshing.csv",
         table=meshing.columns,
-        group=meshing_facts(numbers(meshing)),
+        group=_facts(numbers(meshing)),
         study_findings=findings,
         drawn=partial(_charts, result, meshing),
         overlay=_contacts(meshing),
         interrupted="" if meshing.complete else done,
     )
+
+
+def _facts(numbers: Mapping[str, Any]) -> Tree:
+    """Return the numbers of the study as facts."""
+    first = {name: numbers[name] for name in ("steps_done", *_STUDIED) if name in numbers}
+    tree: Tree = {**first, **numbers}
+    done, asked = numbers["steps_done"], numbers["steps"]
+    place = "" if numbers["complete"] else f"of {asked}"
+    tree["steps_done"] = Fact(done, "phases studied", place=place, shown=True)
+    for name, meaning in _STUDIED.items():
+        if name in numbers:
+            tree[name] = Fact(numbers[name], meaning, shown=True, noise=_NOISE)
+    error = numbers.get("transmission_error")
+    if error is not None:
+        unit, least = error["unit"], error["known_to"]
+        peak = Fact(
+            error["peak_to_peak"], "transmission error, peak to peak", unit=unit, shown=True
+        )
+        if not peak.value:
+            peak = replace(peak, place=f"known to {formatted(least, 1)} {unit}")
+        least_error = Fact(least, "transmission error, known to", unit=unit)
+        tree["transmission_error"] = error | {"known_to": least_error, "peak_to_peak": peak}
+        if "no_harmonics" in error:
+            missing = Fact(error["no_harmonics"], "no harmonics, because of", shown=True)
+            tree["transmission_error"]["no_harmonics"] = missing
+        elif error["harmonics"]:
+            largest = max(error["harmonics"], key=lambda one: one["amplitude"])
+            words = f"largest harmonic, {largest['order']} per turn"
+            harmonic = Fact(largest["amplitude"], words, unit=unit, shown=True)
+            tree["transmission_error"]["largest_harmonic"] = harmonic
+    return tree
 
 
 def _condition(design: GearPairDesign) -> Condition:
