@@ -26,22 +26,7 @@ Given = str | Functions
 
 
 def formula_problems(name: str, given: Given | None, variable: str = VARIABLE) -> Iterator[Breach]:
-    """Yield the faults of the formula of a law, for its ``problems``.
-
-    Parameters
-    ----------
-    name : str
-        The field of the formula.
-    given : str, callable, tuple of callable or None
-        Only a text has faults.
-    variable : str
-        The variable of the formula.
-
-    Yields
-    ------
-    tuple
-        Field, index, message, what is allowed.
-    """
+    """Yield the faults of a formula that is a text, for ``problems`` of a law (see `parse`)."""
     try:
         if isinstance(given, str):
             parse(given, variable)

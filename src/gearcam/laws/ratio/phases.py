@@ -80,7 +80,7 @@ class Arc(ShortRepr):
         return width * (start * t + (end - start) * self.integral(t))
 
 
-def _power_series(*powers: float) -> Arc:
+def _polynomial_arc(*powers: float) -> Arc:
     return Arc(lambda t: polynomial(t, 0.0, *powers), lambda t: primitive(t, 0.0, *powers))
 
 
@@ -91,9 +91,9 @@ ARCS: Final[dict[str, Arc]] = {
         lambda t: 0.5 * t - (0.5 / math.pi) * sin(math.pi * t),
     ),
     # 003 eq. (2.13) with Table 2.3, written on the unit interval
-    "cubic": _power_series(0.0, 0.0, 3.0, -2.0),
+    "cubic": _polynomial_arc(0.0, 0.0, 3.0, -2.0),
     # also the second derivative of the ratio is zero at both ends
-    "quintic": _power_series(0.0, 0.0, 0.0, 10.0, -15.0, 6.0),
+    "quintic": _polynomial_arc(0.0, 0.0, 0.0, 10.0, -15.0, 6.0),
     # a quarter of it, 003 eqs. (3.1), (3.10), (3.11), with a slope at the start
     "sine": Arc(
         lambda t: sin(0.5 * math.pi * t),
