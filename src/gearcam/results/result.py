@@ -38,8 +38,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from gearcam.laws.columns import Given
+    from gearcam.numeric.mesh import Mesh
     from gearcam.numeric.pose import SpacePose
-    from gearcam.parts.solids import Mesh
     from gearcam.pictures.charts import Chart
     from gearcam.pictures.scenes import ContactPoints, Scene
 
