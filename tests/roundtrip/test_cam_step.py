@@ -35,7 +35,7 @@ from gearcam.spatial.cam import SpatialCam
 from gearcam.spatial.guides import SwingArm
 from gearcam.spatial.surface import Cylinder, chord_error, ramp, surface
 from helpers_sampling import chosen, few
-from helpers_spatial import RISE, SPANS, enclosed, reference, swinging
+from helpers_spatial import RISE, SPANS, reference, swinging
 from helpers_step import entities, read_step, silent
 from witness.roller_in_space import Mechanism, cycloidal
 
@@ -73,7 +73,7 @@ def file_of(name: str) -> bytes:
 
 def body(cam: SpatialCam, blank: Cylinder) -> BandedBody:
     """Return the bands with the volume of meshes, extrapolated, and its error."""
-    coarse, fine = (enclosed(surface(cam, blank, *size)) for size in ((360, 13), (720, 25)))
+    coarse, fine = (surface(cam, blank, *size).volume for size in ((360, 13), (720, 25)))
     error = (fine - coarse) / 3.0
     return cam_bands(cam, blank, "cam", (fine + error, abs(error)))
 

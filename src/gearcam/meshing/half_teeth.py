@@ -146,8 +146,8 @@ class HalfTeeth:
         first = self.starts[which]
         sizes = self.starts[which + 1] - first
         owner, place = in_groups(sizes)
-        points = self.points[first[owner] + place]
-        return as_polygons(points * pose.rotation[owner] + pose.shift[owner], sizes)
+        places = self.points[first[owner] + place] * pose.rotation[owner] + pose.shift[owner]
+        return as_polygons(places, sizes)
 
 
 def half_teeth(outline: Outline) -> HalfTeeth:

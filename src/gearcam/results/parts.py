@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from trimesh import Trimesh
 
     from gearcam.export.dxf import DxfStyle
+    from gearcam.numeric.mesh import Mesh
     from gearcam.numeric.pose import Pose, SpacePose
     from gearcam.parts.body import Part
-    from gearcam.parts.solids import Mesh
     from gearcam.pictures.drawings import Drawing
     from gearcam.sheets.sheet import Sheet
 

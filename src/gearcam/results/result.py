@@ -28,8 +28,8 @@ from gearcam.results.written import BuildOutput, demand_formats
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from gearcam.numeric.mesh import Mesh
     from gearcam.numeric.pose import SpacePose
-    from gearcam.parts.solids import Mesh
     from gearcam.pictures.charts import Chart
     from gearcam.pictures.scenes import Scene
 

@@ -16,13 +16,14 @@ from gearcam.base.findings import Finding
 from gearcam.base.numerals import formatted
 from gearcam.designs.outputs import MESHES
 from gearcam.kinds.cam.public import lift_program
-from gearcam.kinds.gridded import ROUND, SAGITTA, STEM, GriddedCam, mesh_from
+from gearcam.kinds.gridded import ROUND, SAGITTA, STEM, GriddedCam
 from gearcam.kinds.shared import solved_file
 from gearcam.kinds.spatial_cam.design import SpatialCamDesign
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
-from gearcam.parts.solids import Mesh, carved
+from gearcam.numeric.mesh import Mesh
+from gearcam.parts.solids import carved
 from gearcam.results.table_rows import TableRows
 from gearcam.spatial.cam import SpatialCam, SpatialWall
 from gearcam.spatial.carving import roller_corners, scallop
@@ -185,8 +186,8 @@ class SpatialCamResult(GriddedCam):
         """Return the cam as a mesh (see `GriddedCam.solid_of`)."""
         cam, blank = self.cam, self.blank
         if not self.carved:
-            return mesh_from(surface(cam, blank, steps, places))
-        whole = mesh_from(blank_surface(cam, blank, ROUND * steps))
+            return surface(cam, blank, steps, places)
+        whole = blank_surface(cam, blank, ROUND * steps)
         return carved(whole, roller_corners(cam, blank, steps, places))
 
     @cached_property
@@ -254,7 +255,7 @@ class SpatialCamResult(GriddedCam):
         from gearcam.parts.shapes import circle_segments
 
         size = 2.0 * self.design.follower.roller_radius
-        roller = mesh_from(roller_surface(self.cam, circle_segments(size, max(chords, SAGITTA))))
+        roller = roller_surface(self.cam, circle_segments(size, max(chords, SAGITTA)))
         return {STEM: self.mesh, **dict.fromkeys(self.rollers, roller)}
 
     @property
