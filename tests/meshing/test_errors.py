@@ -232,7 +232,7 @@ def test_the_largest_factor_is_a_root(root: float, factor: float) -> None:
     assert largest(lambda x: 1.0 if x else -1.0) == 0.0
 
 
-@pytest.mark.parametrize("count", few([20, 60]))
+@pytest.mark.parametrize("count", few([20, 50]))
 def test_random_assemblies_have_the_percentiles_of_quadrature(count: int) -> None:
     """Equal wheels: the two eccentricities add as vectors of any direction."""
     tolerance = 0.02
