@@ -194,7 +194,10 @@ def test_outlines_touch_where_the_flanks_do(name: str) -> None:
 
 def test_the_largest_errors_are_those_of_the_closed_forms() -> None:
     design = with_errors({"eccentricity_mm": [0.05, 0], "steps": 60})
-    facts = built(design).study("errors").group["alone"]["eccentricity1"]
+    study = built(design).study("errors")
+    whole = study.to_dict()["errors"]["transmission_error_rad"]["peak_to_peak"]
+    assert whole == pytest.approx(2.0 * 0.05 / BASE2, rel=5e-3)
+    facts = study.group["alone"]["eccentricity1"]
     limit = math.radians(600 / 3600)
     assert facts["largest_transmission_mm"].value == pytest.approx(0.5 * limit * BASE2, rel=5e-3)
     jam = 0.1 / (2.0 * math.tan(ALPHA))
