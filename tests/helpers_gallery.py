@@ -322,7 +322,7 @@ NUMBERS: dict[str, dict[str, Number]] = {
         # 2*e/(r*cos(alpha)); between phases of 10 degrees at most 0.4 % of it are missed
         "errors.alone.eccentricity1.transmission_error_rad.peak_to_peak": (
             0.04 / (24 * math.cos(math.radians(20))),
-            5e-3,
+            5e-3 * 0.04 / 24,
         ),
     },
     "shop_order": {

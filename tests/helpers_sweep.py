@@ -60,13 +60,3 @@ class Loads:
 
 def wavy(phi: Any) -> Any:
     return 1.0 + 0.1 * np.cos(phi)
-
-
-def hanging(phi: Any) -> Any:
-    time.sleep(1e3)
-    return wavy(phi)
-
-
-def greedy(phi: Any) -> Any:
-    np.ones(1 << 33)
-    return wavy(phi)

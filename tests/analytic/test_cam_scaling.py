@@ -67,7 +67,7 @@ def measured(made: DiscCam, scale: float) -> dict[str, float]:
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("scale", few([1e-6, 1e6]))
-@pytest.mark.parametrize("law", ["cycloidal", "constant-velocity"])
+@pytest.mark.parametrize("law", few(["constant-velocity", "cycloidal"]))
 def test_profiles_scale(kind: str, law: str, scale: float) -> None:
     made, other = at_scale(kind, law, 1.0), at_scale(kind, law, scale)
     size = float(np.abs(made.outline).max())

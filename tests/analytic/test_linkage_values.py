@@ -211,24 +211,6 @@ class TestNailMachine:
         agree(1e-3 * found[1] * omega, column(table, "v_m_s"))
         agree(1e-3 * found[2] * omega**2, column(table, "a_m_s2"))
 
-    def test_extremes_over_the_turn(self, pair: str, law: Law, knots: tuple[float, ...]) -> None:
-        made = self.machine(law, knots)
-        (row,) = (row for row in rows("nail_machine_extremes") if row["pair"] == pair)
-        for order in (1, 2):
-
-            def slope(q: Array, order: int = order) -> tuple[Array, Array]:
-                found = made.track("slide.guide2", q, order + 1).derivatives()
-                return found[order], found[order + 1]
-
-            places, values = extremes(slope, made.knots)
-            for which, at in (("max", values.argmax()), ("min", values.argmin())):
-                agree(values[at], float(row[f"s{order}_{which}"]))
-                apart = math.degrees(places[at]) - float(row[f"s{order}_{which}_deg"])
-                assert abs(apart - 360.0 * round(apart / 360.0)) < 1e-5  # flat there
-            omega = 180.0 * TURN / 60.0
-            largest = 1e-3 * np.abs(values).max() * omega**order
-            agree(largest, float(row["v_max_m_s" if order == 1 else "a_max_m_s2"]))
-
 
 def test_quick_return() -> None:
     """A crank, a block on a swinging guide, a ram that its end pushes."""
@@ -336,33 +318,6 @@ def test_six_bar_with_a_dwell() -> None:
 
     _, values = extremes(angle, np.radians([100.0, 260.0]))
     agree(np.degrees(values.max() - values.min()), 0.330746869002, 100.0)
-
-
-@pytest.mark.parametrize("row", rows("straight_stretch"), ids=lambda row: row["figure"])
-def test_straight_stretch_of_a_coupler_curve(row: dict[str, str]) -> None:
-    """The curve is symmetric to a line through D; there the crank points away from D."""
-    rod, base = 100.0 * float(row["BC_over_AB"]), 100.0 * float(row["AD_over_AB"])
-    turn = np.exp(1j * radians(float(row["CP_from_BC_prolonged_deg"])))
-    made = linkage(
-        MemberPoint("A", 0j),
-        MemberPoint("D", complex(base)),
-        Crank("crank", "q", "A", "B", 100.0),
-        Dyad("RRR", "B", "D", "C", ("coupler", "rocker"), Lengths(rod, rod)),
-        MemberPoint("P", rod + rod * turn, "coupler"),
-    )
-    axis = made.track("P", np.array([pi]), 0).c[0] - base
-    axis = axis / np.abs(axis)
-
-    def along(q: Array) -> tuple[Array, Array]:
-        value, slope = made.track("P", q, 1).derivatives()
-        return np.real((value - base) * axis.conj()), np.real(slope * axis.conj())
-
-    _, values = extremes(along, np.radians([100.0, 260.0]))
-    agree(values.min(), float(row["least"]))
-    agree(values.max(), float(row["largest"]))
-    agree(values.max() - values.min(), float(row["straight_within_mm"]), 100.0)
-    ends = made.track("P", np.radians([100.0, 260.0]), 0).c[0]
-    agree(np.abs(np.diff((ends * axis.conj()).imag)), float(row["over_mm"]))
 
 
 def test_harmonics_of_a_slide() -> None:

@@ -86,7 +86,7 @@ CASES = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", few(CASES))
 @pytest.mark.parametrize("more", few([-0.1, 0.0, 0.1, 0.5, 1.0, 1.5, 2.0]))
 @pytest.mark.parametrize("side", [DRIVE, COAST])
 def test_contact_ratio_and_lag_at_any_distance(case: dict, more: float, side: int) -> None:
@@ -115,7 +115,7 @@ def test_the_ladder_of_distances_is_told(distance: float, ratio: float) -> None:
     assert found["max"] == pytest.approx(ratio, abs=5e-5)
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", few(CASES, 3))
 def test_play_of_the_parts_is_what_the_study_and_the_note_say(case: dict) -> None:
     truth = Wheels(**case)
     made = truth.job

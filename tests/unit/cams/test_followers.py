@@ -155,14 +155,6 @@ def test_speed_and_turning_are_derivatives_of_the_points(case: Case) -> None:
     assert (np.conj(tangents) * second).real == pytest.approx(contact.speed.c[1], abs=1e-11)
 
 
-def test_curvature_of_the_pitch_curve(case: Case) -> None:
-    if isinstance(case.follower, Face):
-        pytest.skip("a face has none")
-    contact = case.follower.contact(case.carrier, *jets(case), radius(case))
-    exact = np.real(true(case, case.touch.curvature))
-    assert (contact.turning / contact.pitch_speed).c[0] == pytest.approx(exact, rel=1e-12)
-
-
 def test_a_jump_is_even_in_its_parameter(case: Case) -> None:
     """Velocities come back from their parameter, which rises; its curve moves at the speed."""
     carrier, follower = case.carrier, case.follower

@@ -204,7 +204,7 @@ OUTPUTS: dict[str, tuple[Callable[[], object], str]] = {
 
 
 @pytest.mark.parametrize("case", OUTPUTS)
-@pytest.mark.parametrize("command", ["build", "check"])
+@pytest.mark.parametrize("command", few(["build", "check"]))
 def test_what_is_no_folder_to_write_to(
     desk: Path, command: str, case: str, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -208,18 +208,6 @@ MEMBERS: dict[str, tuple[tuple[float, float, float], ClosedForm]] = {
 }
 
 
-@pytest.mark.parametrize("name", MEMBERS)
-def test_known_laws_are_members_of_the_family(name: str) -> None:
-    (b, c, d), other = MEMBERS[name]
-    member, own = shown(Scca(b=b, c=c, d=d)), shown(other)
-    for order in range(4):
-        inner = PHI[(PHI % 0.125) > 1e-9]
-        found, expected = (v.function.derivatives(inner, 3)[order] for v in (member, own))
-        np.testing.assert_allclose(found, expected, atol=1e-12 * max(1.0, np.abs(expected).max()))
-    assert member.continuity == own.continuity
-    assert member.peak_jerk == pytest.approx(own.peak_jerk, rel=1e-12)
-
-
 def test_typed_digits_of_the_widths_are_spread() -> None:
     typed = shown(Scca(b=0.25 + 9e-10, c=0.5, d=0.25))
     assert at(typed, 0.5) == pytest.approx(0.5, abs=1e-15)
@@ -239,23 +227,6 @@ def test_sectors_without_a_width_make_no_piece() -> None:
 
 
 # --- polynomials --------------------------------------------------------------------------------
-
-
-def test_textbook_polynomials_have_their_whole_coefficients() -> None:
-    assert of_least_degree([0], [1])[0] == [0, 1]
-    assert of_least_degree([0, 0, 0], [1, 0, 0])[0] == [0, 0, 0, 10, -15, 6]
-    assert of_least_degree([0] * 4, [1, 0, 0, 0])[0] == [0, 0, 0, 0, 35, -84, 70, -20]
-    nine = of_least_degree([0] * 5, [1, 0, 0, 0, 0])[0]
-    assert nine == [0, 0, 0, 0, 0, 126, -420, 540, -315, 70]
-    assert of_least_degree([0, 0, 0], [1, 0, -6, 0])[0] == [0, 0, 0, 8, -12, 6, -1]
-
-
-def test_the_rise_return_goes_on_down_the_same_curve() -> None:
-    """``phi^3*(2 - phi)^3`` over [0, 2]: the return is the rise run backwards."""
-    made = shown(Polynomial3456())
-    assert made.mirrored
-    phi = np.linspace(1.0, 2.0, 11)
-    np.testing.assert_allclose(made.function(2.0 - phi), phi**3 * (2.0 - phi) ** 3, atol=1e-15)
 
 
 CONDITIONS = st.lists(st.floats(-50.0, 50.0, allow_subnormal=False), max_size=8)

@@ -237,7 +237,7 @@ def test_teeth_of_a_ring_are_on_its_inner_edge():
     assert tip < ends.min()  # it points to the shaft
 
 
-@pytest.mark.parametrize("name", CAMS)
+@pytest.mark.parametrize("name", few(CAMS))
 def test_followers_touch_cams(name):
     demand_touch(made(name))
 

@@ -9,6 +9,7 @@ import polars as pl
 import pytest
 
 import gearcam as gc
+from helpers_sampling import few
 
 CAM = "profiles/plate_cam_offset_roller.toml"
 PLAIN = (str, bool, int, float)
@@ -24,7 +25,7 @@ NAMES = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", few(NAMES))
 def test_a_record_holds_plain_values_only(name: str) -> None:
     row = result(f"profiles/{name}.toml").record()
     assert {type(value) for value in row.values()} <= set(PLAIN)

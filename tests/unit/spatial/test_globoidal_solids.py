@@ -250,7 +250,7 @@ def test_a_carved_rib_is_the_rib_of_walls(monkeypatch: pytest.MonkeyPatch, steps
     assert 0.03 < height * (steps / 120) ** 2 < 0.3
     # the walls have about 2 * 13.5 mm by 340 mm in a winding of the rib
     assert 0.0 < made.volume - rib < height * 2 * 13.5 * 340 * 1.5
-    between = 61.5  # at half a step
+    between = 60.0 + 180.0 / steps  # at half a step
     assert (solid(made) ^ roller(cam, between, -height - 1e-3)).volume() == 0.0
     assert (solid(made) ^ roller(cam, between, 0.0)).volume() > 0.1
 

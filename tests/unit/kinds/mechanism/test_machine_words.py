@@ -42,19 +42,6 @@ def told(machine: Mapping[str, Any]) -> dict[str, str]:
 
 
 @pytest.mark.parametrize(
-    ("title", "keys", "key", "name"),
-    [
-        ("dyad", {"from": "b"}, "dyad[0].from", "b"),
-        ("crank", {"on": "motor.wheel2"}, "crank[0].on", "motor.wheel2"),
-        ("point", {"on": "rokcer"}, "point[0].on", "rokcer"),
-    ],
-)
-def test_a_missing_name_is_told_once(title: str, keys: Document, key: str, name: str) -> None:
-    found = told(changed("four-bar", title, **keys))
-    assert found == {key: f'"{name}": nothing has this name'}
-
-
-@pytest.mark.parametrize(
     ("machine", "title", "keys", "key"),
     [
         ("four-bar", "crank", {"length_mm": None, "lenght_mm": 40}, "crank[0].lenght_mm"),
@@ -98,23 +85,6 @@ def test_other_names_are_told_beside_a_faulty_table() -> None:
     machine = changed("four-bar", "crank", length_mm=-40)
     machine["point"] = [{"name": "P", "on": "couppler", "at_mm": [1, 2]}]
     assert list(told(machine)) == ["crank[0].length_mm", "point[0].on"]
-
-
-def test_parts_that_wait_for_each_other_are_told() -> None:
-    machine = changed("four-bar", "dyad", **{"from": "P"})
-    found = told(machine)
-    assert set(found) == {"dyad[0]", "point[0]"}
-    assert found["dyad[0]"].startswith("waits for P")
-
-
-def test_of_a_name_given_twice_both_places_are_told() -> None:
-    machine = dict(MACHINES["four-bar"])
-    machine["point"] = [*machine["point"], {"name": "B", "on": "coupler", "at_mm": [1, 2]}]
-    (found,) = problems(machine)
-    assert found.key == "point[1].name"
-    assert found.message == 'the name "B" is given twice, first by crank[0].joint'
-    (found,) = problems(MACHINES["four-bar"] | {"drive": [MOTOR, MOTOR]})
-    assert found.message == 'the name "motor" is given twice, first by drive[0].name'
 
 
 def output(*names: str, machine: str = "four-bar", **tables: Any) -> Document:

@@ -74,19 +74,6 @@ class TestNailMachine:
         agree(acts[0], 179.27916844)
         assert acts[-1] == pytest.approx(204.644514019, abs=0.01)
 
-    @pytest.mark.parametrize("pair", ["two", "three"])
-    def test_printed_moments(self, pair: str) -> None:
-        table = [row for row in rows("nail_forging") if row["phases"] == pair]
-        changes = {"drive[0].pair": f"profiles/nail_machine_{pair}_phase.toml"}
-        design = gc.load("profiles/nail_machine_slide.toml").with_(changes)
-        constant = {"on": "slide", "force_n": -35435}
-        found = gc.build(design.with_({"load": [constant], "compare": []})).study("torque").columns
-        places = column(table, "phi1_deg")
-        at = np.searchsorted(found["phi1_deg"], places - 1e-9)
-        np.testing.assert_allclose(found["phi1_deg"][at], places, atol=1e-9)
-        agree(found["wheel1_torque_nm"][at], column(table, "wheel1_nm"), relative=1e-10)
-        agree(found["wheel2_torque_nm"][at], column(table, "wheel2_nm"), relative=1e-10)
-
     def test_masses(self) -> None:
         load = {"on": "slide", "force_n": -35435, "from_deg": 150, "to_deg": 170}
         found = study("nail_machine_slide", load=[load], mass=MASSES, gravity=DOWN, compare=[])
@@ -124,17 +111,6 @@ class TestFurnaceDoor:
     def door(self, **changes: Any) -> Any:
         mass = {"of": "door", "mass_kg": 1000, "at_mm": [867.650131097465, 0]}
         return study("furnace_door_hinged", mass=[mass], gravity=DOWN, **changes)
-
-    def test_printed_moments(self) -> None:
-        # at so low a speed inertia counts for nothing
-        found = self.door(**{"drive[0].speed_rpm": 1e-3}).columns
-        table = rows("door_moments")
-        places = column(table, "phi1_deg")
-        for name, wheel in (("torque_nm", "wheel1_nm"), ("wheel2_torque_nm", "wheel2_nm")):
-            for place, value in zip(places, column(table, wheel), strict=True):
-                near = np.argsort(np.abs(found["phi1_deg"] - place))[:4]
-                line = np.polyfit(found["phi1_deg"][near] - place, found[name][near], 2)
-                assert line[-1] == pytest.approx(value, rel=2e-5)
 
     def test_the_pair_costs_moment(self) -> None:
         found = self.door()
