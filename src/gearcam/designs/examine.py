@@ -20,8 +20,8 @@ from gearcam.base.quantities import REQUIRED
 from gearcam.base.reading import UnreadableError, read
 from gearcam.designs.faults import MISSING, TOO_DEEP, Fault, dotted, is_deep, quoted, show
 from gearcam.designs.kind import (
-    FAMILY,
     KINDS,
+    OF_MANY,
     DesignKind,
     Examined,
     Variants,
@@ -369,7 +369,7 @@ def _top_faults(document: Mapping[str, Any], kind: DesignKind) -> Iterator[Fault
         tables = all(isinstance(item, Mapping) for item in items)
         what = "table" if tables else f"key (its value is {show(value)})"
         yield Fault((key,), f"unknown {what}", value, rule, hint)
-    for title in FAMILY:
+    for title in OF_MANY:
         if not isinstance(value := document.get(title, {}), Mapping):
             yield Fault((title,), f"{show(value)} is not a table", value, f"[{title}]")
 

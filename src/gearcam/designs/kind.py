@@ -145,9 +145,8 @@ class Variants:
         return {value: entry for value, entry in found.items() if entry is not None}
 
 
-FAMILY: Final = {"sweep": "what `gearcam sweep` gives to keys: values, ranges, distributions"}
-"""Tables about many designs, which a build leaves out, and what they say (see
-`gearcam.designs.sweep_tables`)."""
+OF_MANY: Final = {"sweep": "what `gearcam sweep` gives to keys: values, ranges, distributions"}
+"""Tables about many designs, which a build leaves out, and what they say."""
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -289,7 +288,7 @@ class DesignKind:
     @property
     def titles(self) -> tuple[str, ...]:
         """The top-level keys and tables of a file of this kind."""
-        return ("kind", "name", *self.tree, "limits", *FAMILY)
+        return ("kind", "name", *self.tree, "limits", *OF_MANY)
 
     @property
     def formats(self) -> Collection[str]:

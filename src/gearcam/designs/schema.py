@@ -13,7 +13,7 @@ from typing import Any, Final
 from gearcam.base.quantities import REQUIRED
 from gearcam.base.rules import Field, Fields, Rule
 from gearcam.designs.faults import description
-from gearcam.designs.kind import FAMILY, KINDS, DesignKind, Variants, variant_of
+from gearcam.designs.kind import KINDS, OF_MANY, DesignKind, Variants, variant_of
 from gearcam.designs.nodes import Choice, Either, Keys, Many, Node
 from gearcam.designs.table import Key, Table, default_of
 
@@ -203,7 +203,7 @@ def _branch(kind: DesignKind, parts: Schema) -> Schema:
             },
             **parts,
         }
-        | {title: {"type": "object", "description": doc} for title, doc in FAMILY.items()},
+        | {title: {"type": "object", "description": doc} for title, doc in OF_MANY.items()},
         **_all_of(
             [*_rules(kind.rules, ChainMap(*fields)), *_variants(kind.variants, kind.several)]
         ),

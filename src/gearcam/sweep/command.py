@@ -14,7 +14,7 @@ from gearcam.base.numerals import formatted
 from gearcam.commands import GOOD, IMPOSSIBLE, INTERRUPTED, Options, add_output, each
 from gearcam.console import complain, progress_bar, say
 from gearcam.designs.design import Design, load
-from gearcam.designs.sweep_tables import family_of
+from gearcam.designs.reader import content_of, decoded, document_in
 from gearcam.sweep.axes import FORM, Varied, axes_of, settings_of
 from gearcam.sweep.engine import MEMORY, SECONDS, Engine, run
 from gearcam.sweep.log import Log
@@ -181,7 +181,8 @@ def axes_given(options: Options) -> tuple[Design, tuple[Varied, ...], dict[str, 
         If nothing is to be varied, or what is given cannot be read.
     """
     file = options["file"]
-    base, table = load(file), dict(family_of(file).get(_TITLE, {}))
+    base = load(file)
+    table = dict(document_in(decoded(content_of(file), file), file).get(_TITLE, {}))
     given = {name: table.pop(name, None) for name in _SETTINGS}
     axes = {one.key: one for one in axes_of(flattened(table), _TITLE)}
     axes |= {one.key: one for one in axes_of(settings_of(options["settings"]))}
