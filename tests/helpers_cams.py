@@ -16,7 +16,7 @@ from gearcam.cams.disc import CHORD_TOLERANCE, DiscCam, make_cam
 from gearcam.cams.followers import Arm, Face, FlatArm, FlatStem, Follower, Round, Stem
 from gearcam.cams.placing import make_follower
 from gearcam.cams.spec import CamSpec, FollowerSpec
-from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.laws.motion import MOTION_LAWS
 from gearcam.laws.phases_of_lift import DwellPhase, Phase, ReturnPhase, RisePhase
 from gearcam.laws.program import Program, make_program
 from witness.cam_sweep import Follower as Witness

@@ -16,7 +16,7 @@ from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.estimates import pair_errors
 from gearcam.gears.pair import GearPair
 from gearcam.gears.rolling import Rolling, roll
-from gearcam.gears.track import Wheel
+from gearcam.gears.track import WHEELS, Wheel
 from witness.exact import Exact, Number, mp
 
 gc: Any = gearcam
@@ -274,16 +274,16 @@ def of_contact(tips: Tips, told: float) -> list[Row]:
     """Contact ratios of a few pairs of flanks that end at both tips."""
     worst, pair = -1.0, tips.result.pair
     for pairs in tips.result.subject.sides:
-        order = np.argsort(pairs.contact_ratios)
+        order = np.argsort(pairs.arcs.ratios)
         for j in order[[0, len(order) // 2, -1]]:
             ends = [
-                tips.of(wheel, int(pairs.tooth(wheel, pairs.numbers[[j]])[0]), pairs.sigma(wheel))
-                for wheel in (1, 2)
+                tips.of(wheel, int(flanks.number(pairs.numbers[[j]])[0]), flanks.sigma)
+                for wheel, flanks in zip(WHEELS, pairs.wheels, strict=True)
             ]
             if None in ends:
                 continue
             true = sum(end[0] for end in ends) / (mp.mpf(MODULE) * mp.pi)
-            error = float(abs(mp.mpf(float(pairs.contact_ratios[j])) - true))
+            error = float(abs(mp.mpf(float(pairs.arcs.ratios[j])) - true))
             if error < 1e-6:  # else roots end it
                 worst = max(worst, error)
     return [Row("contact_ratio", worst, told, pair.teeth[0])] if worst >= 0.0 else []

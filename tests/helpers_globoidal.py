@@ -8,7 +8,7 @@ from typing import Any
 import gearcam as gc
 from gearcam.base.tolerances import DEFAULT
 from gearcam.laws.indexing import index_program
-from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.laws.motion import MOTION_LAWS
 from gearcam.spatial.envelope import Roller
 from gearcam.spatial.globoidal import GloboidalCam
 from helpers_pairs import PROFILES

@@ -66,8 +66,8 @@ BEFORE, AFTER = "before", "after"
 CASES: dict[str, tuple[tuple[str, ...], str, int, str]] = {
     # the command, what it calls when the signal comes, the how manyth call, which state is left
     "reading": (BUILD, "gearcam.designs.reader.read", 1, BEFORE),
-    "law": (BUILD, "gearcam.kinds.gear_pair.result.make_pair", 1, BEFORE),
-    "outline": (BUILD, "gearcam.kinds.gear_pair.result.make_gear", 2, BEFORE),
+    "law": (BUILD, "gearcam.kinds.gear_pair.made.make_pair", 1, BEFORE),
+    "outline": (BUILD, "gearcam.kinds.gear_pair.made.make_gear", 2, BEFORE),
     "checks": (BUILD, "gearcam.kinds.gear_pair.result.run_checks", 1, BEFORE),
     "parts": (BUILD, "gearcam.kinds.gear_pair.parts.make_part", 2, BEFORE),
     "files": (BUILD, "gearcam.export.table.table_bytes", 1, BEFORE),
@@ -153,6 +153,7 @@ def prepare(cases: list[str]) -> None:
         if words[0] not in commands:
             continue
         assert main([*words, "-o", "warm"]) in (0, 1), words
+    assert main(["new", "cam", "warm/new.toml"]) == 0  # looks for what other packages bring
 
 
 def run(name: str, signal_name: str, home: Path) -> dict[str, Any]:

@@ -12,7 +12,7 @@ import shapely
 
 import gearcam
 from arch import rules
-from gearcam.gears.contact import DRIVE
+from gearcam.gears.contact import DRIVE, FlankPairs
 from gearcam.gears.pair import Gear
 from gearcam.gears.spec import PairSpec, Rack, RingSpec
 from gearcam.gears.track import Wheel
@@ -125,9 +125,19 @@ class Assembly:
 PHASES = np.arange(0.0, 360.0, 1.0) * math.pi / 180.0
 
 
+def shifted(pairs: FlankPairs, tooth: int, by: float, wheel: Wheel = 1) -> FlankPairs:
+    """The pairs with both flanks of a tooth of a closed wheel moved along its pitch curve."""
+    wheels = list(pairs.wheels)
+    flanks, teeth = wheels[wheel - 1].flanks, wheels[wheel - 1].toothing.teeth
+    sf = flanks.sf.copy()
+    sf[[tooth - 1, teeth + tooth - 1]] += by
+    wheels[wheel - 1] = replace(wheels[wheel - 1], flanks=replace(flanks, sf=sf))
+    return replace(pairs, wheels=(wheels[0], wheels[1]))
+
+
 def moved(setup: Setup, tooth: int, by: float, wheel: Wheel = 1) -> Setup:
     """The pair with a tooth of a closed wheel moved along its pitch curve, outline and flanks."""
-    turning, toothing = setup.turning, setup.pairs[DRIVE].toothings[wheel - 1]
+    turning, toothing = setup.turning, setup.pairs[DRIVE].wheels[wheel - 1].toothing
     halves = turning.driver if wheel == 1 else turning.driven
     place = toothing.track.angle(toothing.tooth_places[tooth - 1 : tooth])
     angle = by / float(np.abs(toothing.frames(place).p[0]))
@@ -135,12 +145,10 @@ def moved(setup: Setup, tooth: int, by: float, wheel: Wheel = 1) -> Setup:
     for half in np.flatnonzero(halves.teeth == tooth):
         own = slice(halves.starts[half], halves.starts[half + 1])
         points[own] *= np.exp(-1j * angle if toothing.track.clockwise else 1j * angle)
-    name, wheels = "driver" if wheel == 1 else "driven", [*setup.pairs[DRIVE].flanks]
-    sf = wheels[wheel - 1].sf.copy()
-    sf[[tooth - 1, toothing.teeth + tooth - 1]] += by
-    wheels[wheel - 1] = replace(wheels[wheel - 1], sf=sf)
-    pairs = {side: replace(found, flanks=tuple(wheels)) for side, found in setup.pairs.items()}
-    made = replace(turning, **{name: replace(halves, points=points)})
+    pairs = {side: shifted(each, tooth, by, wheel) for side, each in setup.pairs.items()}
+    made = replace(
+        turning, **{"driver" if wheel == 1 else "driven": replace(halves, points=points)}
+    )
     return replace(setup, pairs=pairs, turning=made)
 
 

@@ -13,16 +13,15 @@ import numpy as np
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.tolerances import DEFAULT
-from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.laws.motion import MOTION_LAWS
 from gearcam.laws.phases_of_lift import DwellPhase, ReturnPhase, RisePhase
 from gearcam.laws.program import Program, make_program
-from gearcam.parts.solids import Mesh
+from gearcam.numeric.mesh import Mesh
 from gearcam.spatial.cam import SpatialCam, SpatialWall
 from gearcam.spatial.envelope import Roller
 from gearcam.spatial.guides import Straight, SwingArm
 from gearcam.spatial.make import make_cylinder
 from gearcam.spatial.spec import CylinderSpec, SpatialFollower
-from gearcam.spatial.surface import Surface
 from witness.roller_in_space import TURN, Mechanism, Swept
 
 RISE = math.radians(120.0)
@@ -142,13 +141,8 @@ def slice_way(wall: SpatialWall, left: Swept, theta: float, x: float) -> float:
     return left.way(theta, x, moved, float(most))
 
 
-def solid(made: Mesh | Surface) -> Any:
+def solid(made: Mesh) -> Any:
     """A closed surface as an object of manifold3d."""
     found = manifold3d.Manifold(manifold3d.Mesh64(made.vertices, made.triangles.astype(np.uint64)))
     assert found.status() == manifold3d.Error.NoError
     return found
-
-
-def enclosed(made: Surface) -> float:
-    """Volume of a surface, mm^3."""
-    return Mesh(vertices=made.vertices, triangles=made.triangles).volume

@@ -6,7 +6,7 @@ from gearcam.designs.table import Table, table_of
 from gearcam.kinds.cam.motion import PHASE, by_formula, by_rows
 from gearcam.kinds.gear_pair.design import LAW
 from gearcam.kinds.globoidal_cam.design import INDEX
-from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.laws.motion import MOTION_LAWS
 from gearcam.laws.phases_of_lift import PHASES
 
 WITH_LAW = tuple(PHASE.below)

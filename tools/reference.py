@@ -27,10 +27,10 @@ from gearcam.kinds.cam.forms.base import FORMS, VARIANTS
 from gearcam.kinds.cam.motion import PHASE, by_formula, by_rows
 from gearcam.kinds.gear_pair.design import LAW
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.laws.motion import MOTION_LAWS
 from gearcam.laws.phases_of_lift import PHASES, TURN, RisePhase
 from gearcam.laws.program import make_program
-from gearcam.laws.ratio.base import LAWS
+from gearcam.laws.ratio import LAWS
 from gearcam.results.kind import KINDS, Kind
 from reference_parts import (
     CHECKS_INTRO,

@@ -182,12 +182,12 @@ def ratio() -> Case:
         truth = float(length / (mp.pi * MODULE * mp.cos(alpha)))
 
     def arcs(_: float) -> float:
-        return float(np.mean(flank_pairs(result.gears, DRIVE).contact_ratios))
+        return float(np.mean(flank_pairs(result.gears, DRIVE).arcs.ratios))
 
     def counted(steps: float) -> float:
         # shifted, so that no phase is at an end of contact
         phi = 2.0 * math.pi / TEETH * (np.arange(steps) + 1.0 / 3.0) / steps
-        return float(np.mean(pairs.carrying(phi)))
+        return float(np.mean(pairs.arcs.carrying(phi)))
 
     return Case(
         name="contact_ratio",

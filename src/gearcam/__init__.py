@@ -38,7 +38,8 @@ if TYPE_CHECKING:
     from gearcam.laws import motion as motion_laws
     from gearcam.numeric.columns import Columns
     from gearcam.results.advice import Remedies
-    from gearcam.results.result import Result, StudyResult
+    from gearcam.results.result import Result
+    from gearcam.results.study import StudyResult
 
 
 __all__ = [
@@ -59,7 +60,8 @@ _HOMES = {
     "gearcam.laws": ("laws",),
     "gearcam.laws.motion": ("motion_laws",),
     "gearcam.numeric.columns": ("Columns",),
-    "gearcam.results.result": ("Result", "StudyResult"),
+    "gearcam.results.result": ("Result",),
+    "gearcam.results.study": ("StudyResult",),
     "gearcam.base.tolerances": ("Tolerances",),
 }  # fmt: skip
 """Names that are imported on demand, by their modules; kinds of design add theirs."""

@@ -81,7 +81,7 @@ def _run(arguments: Sequence[str] | None) -> int:
 def _dispatch(words: list[str]) -> int:
     """Run the command named by the first word with the other words; return the exit code."""
     word = words[0] if words else ""
-    command = next((one for one in _commands() if one.name == word), None)
+    command = _command(word)
     if command is not None:
         return command.run(vars(_parser(command).parse_intermixed_args(words[1:])))
     docs = {one.name: one.doc for one in _commands()}
@@ -111,6 +111,15 @@ def _commands() -> Iterator[Command]:
     studies = {one.name: (one, kind) for kind in KINDS.values() for one in kind.studies.values()}
     for name in sorted(studies):
         yield study_command(*studies[name])
+
+
+def _command(word: str) -> Command | None:
+    """Return the command of a `word`; None if there is none."""
+    # those known here first: only then are other packages asked
+    for kind in KINDS.values() if word not in _GENERAL else ():
+        if word in kind.study_tables:
+            return study_command(kind.studies[word], kind)
+    return next((one for one in _commands() if one.name == word), None)
 
 
 def parsers() -> Iterator[argparse.ArgumentParser]:
@@ -286,3 +295,6 @@ _COMMANDS: Final = (
     ),
     Command("schema", "Print the JSON Schema of design files, for use in editors.", _schema),
 )
+
+_GENERAL: Final = frozenset(one.name for one in _COMMANDS)
+"""Names of the general commands."""

@@ -33,7 +33,8 @@ from gearcam.designs.kind import as_written
 from gearcam.results.kind import KINDS, Kind, Study
 
 if TYPE_CHECKING:
-    from gearcam.results.result import Progress, Result
+    from gearcam.results.result import Result
+    from gearcam.results.study import Progress
     from gearcam.results.written import BuildOutput
 
 GOOD, FINDINGS, WRONG, IMPOSSIBLE, FAULT, INTERRUPTED = 0, 1, 2, 3, 4, 130
@@ -104,6 +105,7 @@ def study_command(study: Study, kind: Kind) -> Command:
     """Return the command of a `study` of a `kind` of design that has it."""
 
     def arguments(parser: argparse.ArgumentParser) -> None:
+        kind.titles_with([study.table])  # it may be of another package
         number = "+" if study.many else None
         parser.add_argument("designs", nargs=number, metavar="FILE", help="design file (TOML)")
         add_output(parser)
@@ -177,10 +179,10 @@ def studied(study: Study, design: Design, options: Options) -> Any:
     DesignError
         If designs of this kind have no such study, or a value is not allowed.
     """
-    kinds = {kind.name: kind for kind in KINDS.values() if study.name in kind.studies}
-    if design.kind not in kinds:
+    if study.name not in KINDS[design.kind].studies:
+        kinds = [kind for kind in KINDS.values() if study.name in kind.studies]
         own = as_written(KINDS[design.kind])
-        message = f"this command is for designs of {' or '.join(map(as_written, kinds.values()))}"
+        message = f"this command is for designs of {' or '.join(map(as_written, kinds))}"
         message += f", not for {own}" if " with " in own else ""
         raise DesignError([Problem(message, file=design.source, key="kind", value=design.kind)])
     settings = {f"{study.table}.{key}": one for key, one in options.items() if one is not None}

@@ -86,9 +86,9 @@ def spur(teeth: tuple[int, int], rack: Rack) -> tuple[Spur, tuple[Gear, Gear]]:
 def test_contact_ratio_and_active_radii(teeth: tuple[int, int], rack: Rack, side: int) -> None:
     truth, gears = spur(teeth, rack)
     pairs = flank_pairs(gears, side)
-    assert pairs.contact_ratios == pytest.approx(truth.contact_ratio, rel=1e-9)
+    assert pairs.arcs.ratios == pytest.approx(truth.contact_ratio, rel=1e-9)
     # the ends of the arc of contact of tooth 1 are where the mates' tips touch
-    start, end = (float(edge[0]) for edge in pairs.arcs)
+    start, end = (float(edge[0]) for edge in (pairs.arcs.start, pairs.arcs.end))
     rolling = gears[0].pair.rolling
     phases = np.array([start + 1e-12, end - 1e-12])
     found = contacts(pairs, phases)
@@ -169,10 +169,10 @@ def test_lens_areas(teeth: tuple[int, int], rack: Rack) -> None:
 def test_single_and_double_pair_arcs(teeth: tuple[int, int], rack: Rack) -> None:
     truth, gears = spur(teeth, rack)
     pairs = flank_pairs(gears, DRIVE)
-    start, end, carrying = pairs.stretches
+    start, end, carrying = pairs.arcs.stretches
     assert end[:-1] == pytest.approx(start[1:], abs=1e-12)
     assert float((end - start).sum()) == pytest.approx(2.0 * math.pi, rel=1e-12)
     mean = float(((end - start) * carrying).sum()) / (2.0 * math.pi)
     assert mean == pytest.approx(truth.contact_ratio, rel=1e-9)
     middle = 0.5 * (start + end)
-    assert np.array_equal(pairs.carrying(middle), carrying)
+    assert np.array_equal(pairs.arcs.carrying(middle), carrying)

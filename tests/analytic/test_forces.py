@@ -11,9 +11,9 @@ import pytest
 
 import gearcam as gc
 from gearcam.cams.follower_loads import Loads
-from gearcam.cams.statics import Statics, solve
+from gearcam.cams.statics import Statics
 from gearcam.cams.supports import StraightGuide
-from gearcam.kinds.cam.under_load import loads_of, places
+from gearcam.kinds.cam.under_load import UnderLoad, loads_of
 from helpers_sampling import few
 
 CAM = """
@@ -75,14 +75,9 @@ def loaded(name: str, **friction: float) -> Any:
 
 
 def studied(result: Any) -> tuple[Statics, Loads, np.ndarray]:
-    loads, x = loads_of(result), places(result)
-    way = np.repeat(loads.ways, len(x))
-    x = np.concatenate([x[:: int(one)] for one in loads.ways])
-    motion, design = loads.motion(x, way), result.design
-    share = lambda radius: design.follower.dragged(design.friction, radius)  # noqa: E731
-    total_load, friction = loads.total_load(motion), design.friction
-    found = solve(result.cam.touches, loads.support, x, motion.ds, total_load, friction, share, way)
-    return found, loads, x
+    under = UnderLoad(result)
+    x, way = under.to_and_fro(under.places())
+    return under.statics(x, way), under.loads, x
 
 
 @pytest.mark.parametrize("name", PROFILES)
@@ -487,7 +482,7 @@ def test_the_wall_that_carries_has_a_positive_force_with_friction(
     motion = loads.motion(x)
     total_load, given = loads.total_load(motion), result.design.friction
     share = result.design.follower.dragged(given, result.follower.radius)
-    pushes = [touch.push(x, motion.ds, loads.support, share)[0] for touch in result.cam.touches]
+    pushes = [touch.push(motion, loads.support, share)[0] for touch in result.cam.touches]
     assert not found.lifted.any()
     assert not found.locked.any()
     assert set(found.carrying) == {0, 1}

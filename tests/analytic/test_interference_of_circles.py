@@ -56,7 +56,7 @@ def test_active_radii_of_shifted_wheels(z1: int, z2: int, x: float, ring: bool) 
         math.hypot(r * math.cos(ALPHA), length) for r, length in zip((r1, r2), lengths, strict=True)
     ]
     pairs = flank_pairs(made.gears, DRIVE)
-    start, end = (float(edge[0]) for edge in pairs.arcs)
+    start, end = (float(edge[0]) for edge in (pairs.arcs.start, pairs.arcs.end))
     found = contacts(pairs, np.array([start + 1e-12, end - 1e-12]))
     one, two = np.abs(found.point), np.abs(found.point - pairs.distance)
     assert one.min() == pytest.approx(expected[0], rel=1e-9)

@@ -9,9 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from gearcam.base.registry import name_of
 from gearcam.laws.lift_fit import FittedLift, fit_lift
-from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.laws.motion import MOTION_LAWS
 from gearcam.laws.phases_of_lift import DwellPhase, ReturnPhase, RisePhase
 from gearcam.numeric.arrays import Array, Mask
 from helpers_sampling import few
@@ -105,7 +104,7 @@ def double_dwell(law: str) -> list[Move]:
 
 def named(fitted: FittedLift, k: int) -> list[str]:
     laws = [fitted.model.laws[k], *(one.law for one in fitted.alike[k])]
-    return [name_of(MOTION_LAWS, law) for law in laws]
+    return [MOTION_LAWS.name_of(law) for law in laws]
 
 
 def demand_found(fitted: FittedLift, moves: Sequence[Move]) -> None:
@@ -149,6 +148,28 @@ def test_laws_are_alike_in_much_noise_only() -> None:
     assert named(quiet, 0) == ["cycloidal"]
     assert {"cycloidal", "3-4-5"} <= set(named(loud, 0))
     assert loud.error(("start", 0)) > 100.0 * quiet.error(("start", 0))
+
+
+@pytest.mark.parametrize(
+    ("last", "noise", "seed"),
+    [("modified-sine", 0.04, 0), ("modified-sine", 0.04, 6), ("harmonic", 0.02, 0)],
+)
+def test_phases_share_a_law_unless_another_misses_clearly_less(
+    last: str, noise: float, seed: int
+) -> None:
+    moves = [
+        Move("modified-sine", 20, 80, 0, 10),
+        Move("modified-sine", 100, 160, 10, 2),
+        Move("modified-sine", 190, 260, 2, 12),
+        Move(last, 280, 350, 12, 0),
+    ]
+    theta, lift = rows(moves, 0.0, 180)
+    lift += np.random.default_rng(seed).normal(0.0, noise, len(theta))
+    fitted = fit_lift(theta, lift, (1.0, "mm"))
+    demand_found(fitted, moves)
+    first, *others, end = (named(fitted, k)[0] for k in range(4))
+    assert set(others) == {first}
+    assert (end == first) == (last == "modified-sine")
 
 
 def test_sizes_are_round_where_noise_allows_it() -> None:

@@ -93,7 +93,7 @@ def test_contact_ratio_and_lag_at_any_distance(case: dict, more: float, side: in
     truth = Wheels(**case)
     distance = truth.designed + more
     pairs = flank_pairs(truth.job.gears, side, distance)
-    assert pairs.contact_ratios == pytest.approx(truth.contact_ratio(distance), rel=1e-9)
+    assert pairs.arcs.ratios == pytest.approx(truth.contact_ratio(distance), rel=1e-9)
     found = contacts(pairs, np.linspace(0.0, 1.0, 61))
     assert found.step.size > 30
     assert found.lead == pytest.approx(side * truth.lag(distance), abs=1e-9)

@@ -30,6 +30,27 @@ def _tree(text: str, name: str) -> ast.Module:
     return ast.parse(text, filename=name)
 
 
+# --- imports -------------------------------------------------------------------------------------
+
+
+def imports_of(*paths: Path, root: Path) -> dict[str, set[str]]:
+    """The modules under `root` that each file imports anywhere in it, for types too, by name."""
+    names = {
+        path: ".".join((root.name, *path.relative_to(root).with_suffix("").parts)) for path in paths
+    }
+    modules = {name.removesuffix(".__init__") for name in names.values()}
+    return {
+        name.removesuffix(".__init__"): {
+            inner if (inner := f"{node.module}.{alias.name}") in modules else node.module or ""
+            for node in ast.walk(parse(path))
+            if isinstance(node, ast.ImportFrom)
+            for alias in node.names
+        }
+        & modules
+        for path, name in names.items()
+    }
+
+
 # --- docstrings ---------------------------------------------------------------------------------
 
 

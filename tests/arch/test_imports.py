@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import graphlib
 import json
 import os
 import re
@@ -59,6 +60,22 @@ def _contracts(root: Path) -> subprocess.CompletedProcess[str]:
 def test_contracts_hold() -> None:
     done = _contracts(rules.ROOT)
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_no_module_imports_itself_by_way_of_others() -> None:
+    graph = rules.imports_of(*rules.python_files(rules.SOURCE), root=rules.SOURCE)
+    assert len(graph) > 300
+    graphlib.TopologicalSorter(graph).prepare()
+
+
+def test_a_circle_of_imports_is_seen(tmp_path: Path) -> None:
+    for name, line in (("a", "from house import b"), ("b", "def f():\n    from house.c import x")):
+        (tmp_path / f"{name}.py").write_text(line + "\n")
+    (tmp_path / "c.py").write_text("if TYPE_CHECKING:\n    from house.a import y\n")
+    house = tmp_path.rename(tmp_path.with_name("house"))
+    graph = rules.imports_of(*rules.python_files(house), root=house)
+    with pytest.raises(graphlib.CycleError):
+        graphlib.TopologicalSorter(graph).prepare()
 
 
 WRONG = [

@@ -13,7 +13,8 @@ import pytest
 from claims.claim import LawClaim
 from claims.laws import LAW_CLAIMS
 from gearcam.base.tolerances import DEFAULT
-from gearcam.laws.ratio.base import LAWS, RatioLaw
+from gearcam.laws.ratio import LAWS
+from gearcam.laws.ratio.base import RatioLaw
 from gearcam.laws.ratio.span import RACK, RING, WHEEL, Lobes
 from random_designs.law_draw import LawDraw
 from random_designs.laws import parameters, random_law

@@ -16,7 +16,8 @@ from claims.motion import MOTION_CLAIMS
 from claims.shown_rise import ShownRise, shown
 from gearcam.base.quantities import params_of
 from gearcam.base.tolerances import DEFAULT
-from gearcam.laws.motion.base import MOTION_LAWS, MotionFunction, MotionLawParameters
+from gearcam.laws.motion import MOTION_LAWS
+from gearcam.laws.motion.base import MotionFunction, MotionLawParameters
 from random_designs.draw import Draw
 from random_designs.laws import parameters, random_motion_law
 
@@ -94,11 +95,6 @@ def test_the_registry_holds_exactly_the_rises_that_are_claimed() -> None:
         assert dataclasses.is_dataclass(entry.parameters)
         assert entry.parameters.__doc__
         assert not set(params_of(entry.parameters)) & TAKEN
-
-
-def test_a_name_is_given_once() -> None:
-    with pytest.raises(ValueError, match="'harmonic' is registered twice"):
-        MOTION_LAWS.register(MOTION_LAWS["harmonic"])
 
 
 @pytest.mark.parametrize("claim", CLAIMS)

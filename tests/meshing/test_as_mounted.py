@@ -62,7 +62,7 @@ def test_arcs_end_where_an_edge_begins_to_touch(name: str, more: float, side: in
     made = profile(name)
     pairs = flank_pairs(made.gears, side, made.pair.center_distance + more)
     inside = math.radians(1e-5)
-    for edge, inward in zip(pairs.arcs, (inside, -inside), strict=True):
+    for edge, inward in zip((pairs.arcs.start, pairs.arcs.end), (inside, -inside), strict=True):
         for way, at_edge in ((inward, False), (-inward, True)):
             found = touches(pairs, edge + way)
             own = found.pair == pairs.numbers[found.step]

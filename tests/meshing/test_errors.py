@@ -14,9 +14,10 @@ import shapely
 import gearcam as gc
 from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.gears.contact import COAST, DRIVE, Mounting, flank_pairs
+from gearcam.meshing.assembly import Assembly
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.edges import first_touch, touches
-from gearcam.meshing.errors import Assembly, cycle, largest, of_error, run
+from gearcam.meshing.errors import cycle, largest, of_error, run
 from gearcam.meshing.half_teeth import half_teeth
 from gearcam.meshing.overlap import Turning
 from helpers_built import built

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -12,13 +11,13 @@ import pytest
 import shapely
 
 import gearcam
-from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
+from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.edges import touches
 from gearcam.meshing.patches import patches
-from helpers_pairs import dense_touch, job, profile
+from helpers_pairs import dense_touch, job, profile, shifted
 from helpers_sampling import few
 
 
@@ -56,18 +55,11 @@ def test_first_touch_is_that_of_dense_points(made: GearPairResult, side: int, mo
         assert np.abs(outward).max() < 1e-9
 
 
-def shifted(pairs: FlankPairs, tooth: int, by: float) -> FlankPairs:
-    flanks = pairs.flanks[0]
-    sf = flanks.sf.copy()
-    sf[[tooth - 1, pairs.toothings[0].teeth + tooth - 1]] += by
-    return replace(pairs, flanks=(replace(flanks, sf=sf), pairs.flanks[1]))
-
-
 @pytest.mark.parametrize("side", [DRIVE, COAST])
 def test_a_flank_moved_by_20_um_turns_the_driven_wheel_by_20_um_over_its_lever(side: int) -> None:
     made = profile("nail_machine_two_phase")
     pairs = flank_pairs(made.gears, side)
-    phi = made.pair.rolling.arc.angle(pairs.toothings[0].tooth_places[9:10])
+    phi = made.pair.rolling.arc.angle(pairs.wheels[0].toothing.tooth_places[9:10])
     moved = touches(shifted(pairs, 10, side * 0.02), phi)
     exact = contacts(pairs, phi)
     lever = exact.lever[1][exact.pair == 9]
@@ -116,14 +108,14 @@ def test_sliding_is_the_difference_of_the_arcs_travelled(made: GearPairResult, s
 def test_counts_arcs_and_contacts_agree(made: GearPairResult, side: int) -> None:
     pairs = flank_pairs(made.gears, side)
     phases = np.random.default_rng(7).uniform(0.0, 2.0 * math.pi, 500)
-    number = pairs.carrying(phases)
+    number = pairs.arcs.carrying(phases)
     assert np.array_equal(number, np.bincount(contacts(pairs, phases).step, minlength=500))
-    start, end, carrying = pairs.stretches
+    start, end, carrying = pairs.arcs.stretches
     place = np.searchsorted(start, phases, side="right") - 1
     assert np.array_equal(number, carrying[place])
     rolling = made.pair.rolling
     weighted = (rolling.tracks[0].arc_length(end) - rolling.tracks[0].arc_length(start)) @ carrying
-    assert weighted == pytest.approx(pairs.contact_ratios.sum() * pairs.pitch, rel=1e-9)
+    assert weighted == pytest.approx(pairs.arcs.ratios.sum() * pairs.pitch, rel=1e-9)
 
 
 JUMP: dict[str, Any] = {
@@ -150,7 +142,7 @@ def test_flanks_touch_across_a_jump_of_the_curvature(side: int) -> None:
     found = contacts(pairs, phi1)
     assert np.all((np.diff(found.step) > 0) | (np.diff(found.pair) > 0))
     count = np.bincount(found.step, minlength=len(phi1))
-    assert (count == pairs.carrying(phi1)).all()
+    assert (count == pairs.arcs.carrying(phi1)).all()
     outward = np.full(len(phi1), -np.inf)
     np.maximum.at(outward, found.step, -side * found.lead)
     expected = -side * touched(made, side, phi1[::40], pairs.distance)

@@ -16,7 +16,8 @@ import shapely
 import gearcam as gc
 from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.gears.contact import COAST, DRIVE, Mounting, flank_pairs
-from gearcam.meshing.errors import Assembly, cycle, run
+from gearcam.meshing.assembly import Assembly
+from gearcam.meshing.errors import cycle, run
 from gearcam.meshing.half_teeth import HalfTeeth, half_teeth
 from gearcam.meshing.measured import as_half_teeth, chord_error, demand_near, outline_leads
 from gearcam.meshing.overlap import Turning
@@ -32,6 +33,8 @@ ROUND: dict[str, Any] = {
     "pair": {"teeth": [20, 30], "module_mm": 2, "backlash_mm": 0.1},
     "output": {"files": ["csv"], "chord_tolerance_mm": CHORD},
 }
+MANY = {**ROUND, "pair": {"teeth": [120, 120], "module_mm": 2, "backlash_mm": 0.1}}
+MANY["output"] = {"files": ["csv"], "chord_tolerance_mm": 3e-3}
 ELLIPSE = {**ROUND, "name": "swing", "law": {"type": "ellipse", "eccentricity": 0.3}}
 ELLIPSE["pair"] = {"teeth": [20, 20], "module_mm": 2, "backlash_mm": 0.1}
 
@@ -147,16 +150,37 @@ WRONG: dict[str, tuple[Callable[[np.ndarray], np.ndarray], str]] = {
     "off centre": (lambda z: z + 3.0 - 2.0j, "is off centre by x = 3, y = -2 mm"),
     "turned": (lambda z: z * np.exp(1j * math.radians(100)), "is turned by 100 deg"),
     "turned the other way": (lambda z: z * np.exp(-0.5j), "is turned by -28.6 deg"),
-    "mirrored": (lambda z: np.conj(z) * np.exp(2j), "is mirrored: .* from the other side"),
+    "both": (lambda z: z * 1j + 2.0, "is off centre by x = 2, y = .* mm and turned by 90 deg"),
+    "symmetric": (lambda z: np.conj(z) * np.exp(2j), "is turned by 115 deg"),
 }
 
 
-@pytest.mark.parametrize("fault", chosen(list(WRONG), *list(WRONG)[:6]))
-def test_a_wrong_outline_is_refused_with_its_cause(fault: str) -> None:
+@pytest.mark.parametrize("fault", chosen(list(WRONG), *list(WRONG)[:6], "mirrored"))
+@pytest.mark.parametrize("chord", few([3e-3, 1e-3]))
+def test_a_wrong_outline_is_refused_with_its_cause(fault: str, chord: float) -> None:
+    """However far apart its points are: a wheel that is symmetric is not called mirrored."""
     change, message = WRONG[fault]
-    own = complex_of(made("swing").gear1.outline)
+    output = {**ELLIPSE["output"], "chord_tolerance_mm": chord}
+    own = complex_of(built(gc.design({**ELLIPSE, "output": output})).gear1.outline)
     with pytest.raises(InfeasibleError, match=message):
         demand_near(change(own), own, 2.0, "errors.outline1")
+
+
+def test_a_wheel_without_symmetry_may_be_mirrored() -> None:
+    result = profile("nail_machine_three_phase")
+    own = complex_of(result.gear1.outline)
+    with pytest.raises(InfeasibleError, match=r"is mirrored: .* from the other side"):
+        demand_near(np.conj(own) * np.exp(2j), own, result.pair.module, "errors.outline1")
+
+
+def test_a_round_wheel_is_turned_by_less_than_half_a_pitch_however_many_teeth_it_has() -> None:
+    own = complex_of(built(gc.design(MANY)).gear1.outline)
+    for change, message in (
+        (lambda z: z * np.exp(1j * math.radians(1.4)), "is turned by 1.4 deg"),
+        (lambda z: z + 3.0 - 2.0j, r"is off centre by x = 3, y = -2 mm \("),
+    ):
+        with pytest.raises(InfeasibleError, match=message):
+            demand_near(change(own), own, 2.0, "errors.outline1")
 
 
 @pytest.mark.parametrize("name", ["nautilus", "furnace_door_two_phase", "ring_ellipse", "feeder"])

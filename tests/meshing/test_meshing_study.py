@@ -79,9 +79,9 @@ def test_outlines_count_the_unloaded_pairs_but_within_a_step_of_a_change(
     """
     meshing = study(profile(name).gears, MeshingSpec(overclosure=math.radians(5e-4), steps=steps))
     pairs, phi = meshing.setup.pairs[DRIVE], meshing.phi1
-    stepwise, unloaded = pairs_in_contact(meshing), pairs.carrying(phi)
+    stepwise, unloaded = pairs_in_contact(meshing), pairs.arcs.carrying(phi)
     assert np.all(stepwise >= unloaded)
-    changes = pairs.stretches[0]
+    changes = pairs.arcs.stretches[0]
     apart = np.flatnonzero(stepwise != unloaded)
     beside = np.abs(np.angle(np.exp(1j * (phi[apart][:, None] - changes)))).min(axis=1)
     far = apart[beside > math.radians(1.0)]
@@ -194,7 +194,7 @@ def test_teeth_choose_the_phases() -> None:
     meshing = study(profile(NAILS[0]).gears, MeshingSpec(teeth=(1, 27)))
     assert 25 < len(meshing.phi1) < 50
     pairs = flank_pairs(profile(NAILS[0]).gears, DRIVE)
-    middle = pairs.toothings[0].track.angle(pairs.toothings[0].tooth_places[[0, 26]])
+    middle = pairs.wheels[0].toothing.track.angle(pairs.wheels[0].toothing.tooth_places[[0, 26]])
     beside = np.abs(np.angle(np.exp(1j * (meshing.phi1[:, None] - middle)))).min(axis=1)
     assert beside.max() < math.radians(20.0)
     assert {1.0, 27.0} <= set(meshing.columns["tooth1"].tolist())
@@ -216,7 +216,7 @@ def test_the_pair_s_own_check_names_the_sides_alike() -> None:
     strict = run_checks(PAIR_KIND, subject_of(made), limits)
     worse = [f for f in strict if f.code == "contact-ratio"]
     assert [f.where.partition(",")[0] for f in worse] == ["driving forward"]
-    ratios = {side: flank_pairs(made.gears, side).contact_ratios.min() for side in (DRIVE, COAST)}
+    ratios = {side: flank_pairs(made.gears, side).arcs.ratios.min() for side in (DRIVE, COAST)}
     assert ratios[DRIVE] < 1.4 < ratios[COAST]
     assert worse[0].value == pytest.approx(ratios[DRIVE], rel=1e-12)
 

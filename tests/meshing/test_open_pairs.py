@@ -256,13 +256,14 @@ def test_a_flank_moved_by_20_um_turns_the_driven_wheel_by_20_um_over_its_lever(
     name: str, side: int
 ) -> None:
     pairs = flank_pairs(made(name).gears, side)
-    toothing = pairs.toothings[0]
+    driver, driven = pairs.wheels
     j = 4
-    (number,) = np.flatnonzero(pairs.flanks[0].sf == pairs.place(1, np.array([j])))
-    sf = pairs.flanks[0].sf.copy()
-    phi = toothing.track.angle(sf[number : number + 1])
+    (number,) = np.flatnonzero(driver.flanks.sf == driver.place(np.array([j])))
+    sf = driver.flanks.sf.copy()
+    phi = driver.toothing.track.angle(sf[number : number + 1])
     sf[number] += side * 0.02
-    broken = replace(pairs, flanks=(replace(pairs.flanks[0], sf=sf), pairs.flanks[1]))
+    moved_flanks = replace(driver.flanks, sf=sf)
+    broken = replace(pairs, wheels=(replace(driver, flanks=moved_flanks), driven))
     exact, moved = contacts(pairs, phi), touches(broken, phi)
     normal = 0.02 * math.cos(made(name).pair.rack.pressure_angle)
     lever = exact.lever[1][exact.pair == j]

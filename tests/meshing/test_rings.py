@@ -77,7 +77,7 @@ def test_a_contact_lies_on_both_flanks_and_nothing_leads(name: str, side: int) -
     assert np.abs(found.lead).max() < 1e-12
     turn = np.exp(1j * driven_angles(name, phi1))[found.step]
     seen, force = (found.point + distance) * turn, found.force * turn
-    toothing, places = pairs.toothings[1], pairs.place(2, found.pair)
+    toothing, places = pairs.wheels[1].toothing, pairs.wheels[1].place(found.pair)
 
     def apart(roll: Array) -> tuple[Plane, Plane]:
         frames = toothing.frames(roll)

@@ -14,8 +14,9 @@ import gearcam as gc
 from gearcam.base.errors import InfeasibleError
 from gearcam.gears.contact import DRIVE
 from gearcam.kinds.gear_pair.design import GearPairDesign
+from gearcam.meshing.assembly import Assembly
 from gearcam.meshing.contact import contacts
-from gearcam.meshing.errors import Assembly, run
+from gearcam.meshing.errors import run
 from gearcam.meshing.solids import bodies, tilted
 from gearcam.meshing.study import Setup, mount, phases
 from gearcam.parts.solids import Prisms

@@ -14,7 +14,7 @@ import pytest
 
 from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.rolling import roll
-from gearcam.laws.ratio.base import LAWS
+from gearcam.laws.ratio import LAWS
 from gearcam.laws.ratio.composite import Fourier
 from gearcam.laws.ratio.formula import Formula, RackLaw
 from gearcam.laws.ratio.span import ONE_LOBE

@@ -19,7 +19,7 @@ import shapely
 import gearcam
 from gearcam.base.errors import InfeasibleError
 from gearcam.kinds.gear_pair.result import GearPairResult
-from gearcam.laws.ratio.base import LAWS
+from gearcam.laws.ratio import LAWS
 from gearcam.laws.ratio.span import RACK
 from gearcam.meshing.half_teeth import half_teeth
 from gearcam.meshing.overlap import Turning

@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from gearcam.designs.outputs import MESHES
 from gearcam.kinds.cam.tables import GOALS
-from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.laws.motion import MOTION_LAWS
 from random_designs.blank import blank
 from random_designs.draw import Draw, short
 from random_designs.goals import seek

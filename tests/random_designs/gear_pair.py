@@ -9,7 +9,7 @@ import math
 from typing import Any, Final
 
 from gearcam.designs.outputs import MESHES
-from gearcam.laws.ratio.base import LAWS
+from gearcam.laws.ratio import LAWS
 from random_designs.blank import blank, without_openings
 from random_designs.draw import Draw, short
 from random_designs.goals import seek

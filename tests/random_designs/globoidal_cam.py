@@ -9,7 +9,7 @@ import math
 from typing import Any, Final
 
 from gearcam.designs.outputs import MESHES
-from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.laws.motion import MOTION_LAWS
 from random_designs.draw import Draw, short
 from random_designs.goals import seek
 from random_designs.laws import random_motion_law

@@ -19,8 +19,8 @@ from gearcam.base.errors import InfeasibleError
 from gearcam.base.quantities import REQUIRED, Param, params_of
 from gearcam.base.tolerances import DEFAULT
 from gearcam.designs.table import Table
-from gearcam.laws.motion.base import MOTION_LAWS
-from gearcam.laws.ratio.base import LAWS
+from gearcam.laws.motion import MOTION_LAWS
+from gearcam.laws.ratio import LAWS
 from gearcam.laws.ratio.span import Lobes
 from helpers_tables import law_table, rise_table
 from random_designs.draw import Draw, short
@@ -101,7 +101,7 @@ def _required(owner: Any, field: str) -> bool:
 def _value(d: Draw, param: Param, shown: Any, usual: tuple[float, float] | None) -> Any:
     """Return a value in the unit of files: of the usual range, or from a bound to the example."""
     if param.choices:
-        return d.pick(param.choices)
+        return d.pick(tuple(param.choices))
     bounds = [bound for bound in (param.ge, param.gt) if bound is not None]
     if usual is None and (isinstance(shown, bool | str | list) or not bounds):
         return shown

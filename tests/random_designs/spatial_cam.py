@@ -9,7 +9,7 @@ import math
 from typing import Any, Final
 
 from gearcam.designs.outputs import MESHES
-from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.laws.motion import MOTION_LAWS
 from random_designs.cam import motion_by_phases, motion_of_turn
 from random_designs.draw import Draw, short
 from random_designs.goals import seek

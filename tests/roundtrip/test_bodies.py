@@ -19,12 +19,13 @@ from gearcam.export.mesh import glb_bytes, stl_bytes, threemf_bytes
 from gearcam.export.sheet_dxf import sheet_dxf
 from gearcam.export.sheet_svg import sheet_svg
 from gearcam.export.svg import svg_bytes
-from gearcam.kinds.gear_pair.drawn import pair_drawing
+from gearcam.kinds.gear_pair.drawings import pair_drawing
+from gearcam.numeric.mesh import Mesh
 from gearcam.numeric.moments import Moments
 from gearcam.parts.body import Mark, Opening, Part
 from gearcam.parts.mass import mass_properties, volume_moments
 from gearcam.parts.shapes import Circle
-from gearcam.parts.solids import Mesh, solid, volume_error
+from gearcam.parts.solids import solid, volume_error
 from gearcam.pictures.drawings import cut_drawing, wheel_drawing
 from gearcam.sheets.wheel import wheel_sheet
 from helpers_contour import disc_contour, gear_contour, layers

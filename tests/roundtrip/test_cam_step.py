@@ -24,7 +24,7 @@ from gearcam.base.tolerances import DEFAULT
 from gearcam.export.step import step_bytes
 from gearcam.export.step_bands import banded_solid
 from gearcam.export.step_shapes import occt
-from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.laws.motion import MOTION_LAWS
 from gearcam.laws.phases_of_lift import DwellPhase, ReturnPhase, RisePhase
 from gearcam.laws.program import make_program
 from gearcam.numeric.pose import UNMOVED
@@ -35,7 +35,7 @@ from gearcam.spatial.cam import SpatialCam
 from gearcam.spatial.guides import SwingArm
 from gearcam.spatial.surface import Cylinder, chord_error, ramp, surface
 from helpers_sampling import chosen, few
-from helpers_spatial import RISE, SPANS, enclosed, reference, swinging
+from helpers_spatial import RISE, SPANS, reference, swinging
 from helpers_step import entities, read_step, silent
 from witness.roller_in_space import Mechanism, cycloidal
 
@@ -73,7 +73,7 @@ def file_of(name: str) -> bytes:
 
 def body(cam: SpatialCam, blank: Cylinder) -> BandedBody:
     """Return the bands with the volume of meshes, extrapolated, and its error."""
-    coarse, fine = (enclosed(surface(cam, blank, *size)) for size in ((360, 13), (720, 25)))
+    coarse, fine = (surface(cam, blank, *size).volume for size in ((360, 13), (720, 25)))
     error = (fine - coarse) / 3.0
     return cam_bands(cam, blank, "cam", (fine + error, abs(error)))
 

@@ -14,7 +14,7 @@ from ezdxf.math import bulge_to_arc
 import gearcam
 from gearcam.export.dxf import DxfStyle, dxf_bytes
 from gearcam.export.dxf_read import DxfError, measure_dxf, read_dxf
-from gearcam.kinds.gear_pair.drawn import pair_drawing
+from gearcam.kinds.gear_pair.drawings import pair_drawing
 from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Part
 from gearcam.parts.marks import timing_mark

@@ -14,7 +14,7 @@ from ezdxf.entities.spline import Spline
 
 from gearcam.export.dxf import DxfStyle, dxf_bytes
 from gearcam.export.dxf_read import DxfError, measure_dxf, read_dxf
-from gearcam.kinds.gear_pair.drawn import pair_drawing
+from gearcam.kinds.gear_pair.drawings import pair_drawing
 from gearcam.numeric import splines
 from gearcam.numeric.arcs import fit_closed
 from gearcam.numeric.arrays import as_pairs

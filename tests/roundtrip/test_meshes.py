@@ -17,10 +17,11 @@ import pytest
 
 from gearcam.export.mesh import glb_bytes, stl_bytes, threemf_bytes
 from gearcam.numeric.contour import Contour
+from gearcam.numeric.mesh import Mesh
 from gearcam.parts import solids
 from gearcam.parts.body import Mark, Part
 from gearcam.parts.marks import timing_mark
-from gearcam.parts.solids import Mesh, SolidError, solid, volume_error
+from gearcam.parts.solids import SolidError, solid, volume_error
 from helpers_contour import bore, gear_contour, square_contour
 
 etree: Any = importlib.import_module("lxml.etree")

@@ -18,7 +18,7 @@ from gearcam.export.dxf import DxfStyle
 from gearcam.export.dxf_read import measure_dxf, read_dxf
 from gearcam.export.sheet_dxf import sheet_dxf
 from gearcam.export.sheet_svg import sheet_svg
-from gearcam.kinds.gear_pair.drawn import pair_drawing
+from gearcam.kinds.gear_pair.drawings import pair_drawing
 from gearcam.kinds.gear_pair.sheet import pair_sheet
 from gearcam.numeric.arrays import as_pairs
 from gearcam.numeric.pose import Pose

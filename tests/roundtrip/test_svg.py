@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from gearcam.export.svg import svg_bytes
-from gearcam.kinds.gear_pair.drawn import pair_drawing
+from gearcam.kinds.gear_pair.drawings import pair_drawing
 from gearcam.numeric.arrays import as_complex
 from gearcam.parts.body import Part
 from gearcam.parts.marks import timing_mark

@@ -19,6 +19,9 @@ from gearcam.base.display import ShortRepr, line, renderer
 from gearcam.base.errors import demand_finite
 from gearcam.base.numerals import formatted, told_apart
 
+Tree = dict[str, Any]
+"""Facts by key: plain values, `Fact`, lists and groups of them."""
+
 _UNITS: Final = {
     "_kg_m3": "kg/m3",
     "_mm_s3": "mm/s3",

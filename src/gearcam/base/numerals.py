@@ -26,6 +26,9 @@ NOISE: Final = 1e-12
 _EVERY: Final = 17
 """Significant digits that tell any two doubles apart."""
 
+_AGREE: Final = 5
+"""Least number of significant digits in which a number and its rounded value must agree."""
+
 _WHOLE: Final = 15
 """Length of the shortest text of a double up to which it needs no correction, characters."""
 
@@ -100,7 +103,7 @@ def told_apart(
     return texts(digits)
 
 
-def rounds_to(value: float, written: float, digits: int = 5) -> bool:
+def rounds_to(value: float, written: float) -> bool:
     """Return whether a number as somebody wrote it is a `value`, rounded.
 
     Parameters
@@ -109,13 +112,11 @@ def rounds_to(value: float, written: float, digits: int = 5) -> bool:
         A computed number.
     written : float
         As given; the zeros at its end are not known.
-    digits : int
-        Least number of significant digits in which they must agree.
     """
     from decimal import Decimal
 
     number = Decimal(repr(exact(written))).normalize()
-    count = max(digits, len(number.as_tuple().digits))
+    count = max(_AGREE, len(number.as_tuple().digits))
     return abs(value - written) <= 0.5 * 10.0 ** (number.adjusted() + 1 - count)
 
 

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Literal
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     from numpy.typing import NDArray
 
@@ -35,9 +35,11 @@ REQUIRED: Final = dataclasses.MISSING
 """Default of required parameters."""
 
 OPPOSITES: Final = {
-    "translating": "oscillating", "oscillating": "translating",
-    "turning": "sliding", "sliding": "turning",
-}  # fmt: skip
+    "translating": "oscillating",
+    "oscillating": "translating",
+    "turning": "sliding",
+    "sliding": "turning",
+}
 """Circumstances on which units depend: the motion of a cam's follower, and that of the cam."""
 
 
@@ -120,7 +122,7 @@ class Param:
         Whether 0 means that there is none; other values are then at least `least`.
     finest : float
         Least value beside 0 where it is not that of the quantity, which is for sizes.
-    choices : tuple of str or None
+    choices : collection of str or None
         The allowed words, for text.
     min_length : int or None
         Least length, for lists.
@@ -160,7 +162,7 @@ class Param:
     le: float | None = None
     zero_is_none: bool = False
     finest: float = 0.0
-    choices: tuple[str, ...] | None = None
+    choices: Collection[str] | None = None
     min_length: int | None = None
     doc: str = ""
     example: Any = None

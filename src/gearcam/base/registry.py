@@ -1,14 +1,19 @@
-"""Registries: entries by name, each registered by the module that defines it.
+"""Registries: entries by name, each defined in a module of a package.
 
-That module is imported when its entry is first used: a design with one law loads that law only.
+The module is imported when its entry is first used: a design with one law loads that law only.
+Other installed packages may bring more (`gearcam.base.brought`).
 """
 
 from __future__ import annotations
 
 import importlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Mapping
+from functools import partial
 from types import MappingProxyType
 from typing import Any, Generic, Protocol, TypeVar
+
+from gearcam.base.brought import Open, brought, load_brought
+from gearcam.base.display import cut
 
 
 class Named(Protocol):
@@ -21,102 +26,115 @@ class Named(Protocol):
 
 
 E = TypeVar("E", bound=Named)
+V = TypeVar("V")
 
 
-class Registry(Mapping[str, E], Generic[E]):
+class Registry(Open, Mapping[str, E], Generic[E]):
     """Entries by name, loaded on demand.
 
     Parameters
     ----------
     what : str
-        Word for an entry in messages, such as ``law``.
+        Word for an entry, such as ``law``.
+    package : str
+        The package whose modules have the entries, each in its tuple ``ENTRIES``.
     homes : mapping of str to tuple of str
-        The names that each module registers, by module.
+        The names of the entries of each module, by module.
+    group : str
+        Group of the entries that packages bring; empty if they cannot.
     """
 
-    def __init__(self, what: str, homes: Mapping[str, tuple[str, ...]]) -> None:
+    def __init__(
+        self, what: str, package: str, homes: Mapping[str, tuple[str, ...]], group: str = ""
+    ) -> None:
         self._what = what
-        self._homes = {name: module for module, names in homes.items() for name in names}
+        self._group = group
+        self._homes = {name: f"{package}.{home}" for home, names in homes.items() for name in names}
         self._entries: dict[str, E] = {}
 
     def __repr__(self) -> str:
         return f"<Registry, each entry {self._what}>"
 
-    def register(self, *entries: E) -> None:
-        """Add entries.
-
-        Parameters
-        ----------
-        *entries : Named
-            The entries.
-
-        Raises
-        ------
-        ValueError
-            If a name is already registered.
-        """
-        for entry in entries:
-            if entry.name in self._entries:
-                raise ValueError(f"{self._what} {entry.name!r} is registered twice")
-            self._entries[entry.name] = entry
-
-    @property
-    def loaded(self) -> tuple[E, ...]:
-        """The entries whose modules have been imported."""
-        return tuple(self._entries.values())
-
     def __getitem__(self, name: str) -> E:
         if name not in self._entries and name in self._homes:
-            importlib.import_module(self._homes[name])
+            entries = importlib.import_module(self._homes[name]).ENTRIES
+            self._entries |= {one.name: one for one in entries}
+        elif name not in self._entries:
+            self._entries[name] = load_brought(self._group, name)
         return self._entries[name]
 
-    def __iter__(self) -> Iterator[str]:
-        return iter(dict.fromkeys((*self._homes, *self._entries)))
+    def _known(self) -> Collection[str]:
+        return self._homes
 
-    def __len__(self) -> int:
-        return len(self._homes.keys() | self._entries.keys())
-
-    def __contains__(self, name: object) -> bool:
-        return name in self._homes or name in self._entries
+    def name_of(self, part: object) -> str:
+        """Return the name of the entry whose parameters a `part` is; empty if there is none."""
+        own, home = type(part), type(part).__module__
+        names = [name for name, module in self._homes.items() if module == home]
+        names = names or list(brought(self._group))
+        every: dict[str, Any] = {name: self[name] for name in names}
+        return next((name for name, one in every.items() if one.parameters is own), "")
 
 
 def deferred(place: str) -> Callable[..., Any]:
     """Return a function that imports the one at a `place`, ``package.module:name``, to call it."""
-
-    def call(*arguments: Any, **named: Any) -> Any:
-        return _imported(place)(*arguments, **named)
-
-    return call
+    return partial(_call, place)
 
 
-class DeferredMapping(Mapping[str, Any]):
-    """The mapping at a `place`, ``package.module:name``, imported when it is first used."""
+def _call(place: str, /, *arguments: Any, **named: Any) -> Any:
+    return _imported(place)(*arguments, **named)
 
-    def __init__(self, place: str) -> None:
+
+class OpenMapping(Open, Mapping[str, V], Generic[V]):
+    """A mapping to which other packages may add.
+
+    Parameters
+    ----------
+    own : mapping of str to object
+        What is known here, by name.
+    group : str
+        Group of what packages bring besides; empty if they cannot.
+    """
+
+    def __init__(self, own: Mapping[str, V] = MappingProxyType({}), group: str = "") -> None:
+        self.own = own
+        self._group = group
+
+    def __repr__(self) -> str:
+        return cut(f"<{type(self).__name__} {', '.join(self._known())}>")
+
+    def __getitem__(self, name: str) -> V:
+        known = self._known()
+        return known[name] if name in known else load_brought(self._group, name)
+
+    def _known(self) -> Mapping[str, V]:
+        return self.own
+
+
+class DeferredMapping(OpenMapping[Any]):
+    """The mapping at a `place`, ``package.module:name``, imported when it is first used.
+
+    Parameters
+    ----------
+    place : str
+        Where it is.
+    group : str
+        Group of what packages bring besides; empty if they cannot.
+    """
+
+    def __init__(self, place: str, group: str = "") -> None:
+        super().__init__(group=group)
         self._place = place
 
     def __repr__(self) -> str:
         return f"<{self._place}>"
 
-    def __getitem__(self, name: str) -> Any:
-        return _imported(self._place)[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(_imported(self._place))
-
-    def __len__(self) -> int:
-        return len(_imported(self._place))
+    def _known(self) -> Mapping[str, Any]:
+        return _imported(self._place)
 
 
 def _imported(place: str) -> Any:
     module, _, name = place.partition(":")
     return getattr(importlib.import_module(module), name)
-
-
-def name_of(registry: Registry[Any], part: object) -> str:
-    """Return the name of the entry in `registry` whose parameters `part` is; else an empty text."""
-    # the class of the object was imported, so its entry is registered
-    return next((one.name for one in registry.loaded if one.parameters is type(part)), "")
 
 
 def classes_in(registry: Registry[Any]) -> dict[str, type]:

@@ -65,6 +65,11 @@ class DriverAxis(ShortRepr):
     scale: float
     whole: float
 
+    @property
+    def label(self) -> str:
+        """The label of its axis."""
+        return f"{self.called} {self.symbol}, {self.unit}"
+
     def text(self, theta: float) -> str:
         """Return a driver position as text with its unit, with rounding shown as 0."""
         return f"{formatted(self.scale * theta, scale=self.whole)} {self.unit}"

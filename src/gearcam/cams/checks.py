@@ -17,13 +17,12 @@ import numpy as np
 from gearcam.base.findings import ROUNDING, Remark, check
 from gearcam.base.numerals import formatted, rounded_down, settled, shortened
 from gearcam.base.quantities import ANGLE, LENGTH, Param
-from gearcam.base.registry import name_of
 from gearcam.cams.cam import Cam
 from gearcam.cams.followers import Follower
 from gearcam.cams.spec import FITTED, FOLLOWED, KIND, PRECISION
 from gearcam.cams.wall import PitchMotion, Wall
 from gearcam.laws.displacement import Jump
-from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.laws.motion import MOTION_LAWS
 from gearcam.mechanics.clearance import without_clearance
 
 if TYPE_CHECKING:
@@ -486,10 +485,10 @@ def laws_alike(fitted: FittedMotion, limit: float) -> Iterator[Remark]:  # noqa:
     lift = fitted.lift
     for k, others in enumerate(lift.alike):
         if others:
-            names = [name_of(MOTION_LAWS, one.law) for one in others]
+            names = [MOTION_LAWS.name_of(one.law) for one in others]
             yield Remark(
                 "Cannot be distinguished at this noise: "
-                f"{name_of(MOTION_LAWS, lift.model.laws[k])}, {', '.join(names)}.",
+                f"{MOTION_LAWS.name_of(lift.model.laws[k])}, {', '.join(names)}.",
                 _measured(fitted, k),
             )
 

@@ -135,7 +135,10 @@ def undercut(curve: CamCurve) -> list[tuple[float, float]]:
         return curve.contact(theta).speed.derivatives()
 
     speeds = curve.contact_of(survey.values).speed.derivatives()
-    if _stays_positive(survey.places, *speeds):
+    # between two points a function lies above the lower of its tangents if it has a minimum there,
+    # otherwise above its ends
+    cell = np.diff(survey.places, axis=1).max(axis=1, keepdims=True)
+    if np.all(speeds[0] - np.abs(speeds[1]) * cell > 0.0):
         return stretches
     places, values = extremes_among(speed, survey.places, *speeds)
     before, after = values[:-1] < 0.0, values[1:] < 0.0
@@ -149,16 +152,6 @@ def undercut(curve: CamCurve) -> list[tuple[float, float]]:
     kept = whole & (before | after) & (low < high)
     stretches += zip(low[kept].tolist(), high[kept].tolist(), strict=True)
     return _joined(sorted(stretches), _GAP * curve.program.grain)
-
-
-def _stays_positive(places: Array, values: Array, slopes: Array) -> bool:
-    """Return whether no tangent to a function reaches zero within its cell of a fine grid, (n, k).
-
-    Between two points a function lies above the lower of its tangents if it has a minimum there,
-    otherwise above its ends.
-    """
-    cell = np.diff(places, axis=1).max(axis=1, keepdims=True)
-    return bool(np.all(values - np.abs(slopes) * cell > 0.0))
 
 
 def _joined(stretches: list[tuple[float, float]], gap: float) -> list[tuple[float, float]]:

@@ -54,8 +54,13 @@ def make_follower(follower: FollowerSpec, cam: CamSpec) -> Follower:
     base = _given(cam.base_radius, "a base radius")
     if not follower.oscillating:
         return FlatStem(start=base, offset=follower.offset)
-    pivot = _given(follower.pivot_distance, "a pivot distance")
-    return _swinging_face(pivot, follower.face_offset, base)
+    pivot, offset = _given(follower.pivot_distance, "a pivot distance"), follower.face_offset
+    if not abs(base + offset) < pivot:
+        what, parts = "the face cannot touch the base circle", "pivot and face offset"
+        limits, straight = (-pivot - offset, pivot - offset), {"follower.face_offset_mm": 0.0}
+        adjustment = Adjustment(far=straight)
+        raise _out_of_reach(what, "cam.base_radius_mm", parts, base, limits, adjustment)
+    return FlatArm(start=0.0, pivot=pivot, offset=offset).starting_at(base)
 
 
 def make_round_follower(follower: FollowerSpec, cam: CamSpec) -> Round:
@@ -164,33 +169,26 @@ def followers_of(spec: FollowerSpec, sizes: Mapping[str, Array]) -> tuple[Follow
 
 def _arm(pivot: float, arm: float, radius: float, size: float) -> Arm:
     follower = Arm(start=0.0, radius=radius, arm=arm, pivot=complex(pivot))
-    low, high = follower.nearest, follower.farthest
-    if not low < size < high:
+    limits = follower.nearest, follower.farthest
+    if not limits[0] < size < limits[1]:
         what, parts = "the arm cannot reach the prime circle", "arm and pivot"
         key, least = "follower.pivot_distance_mm", abs(arm - size)
         near = least if pivot <= least else arm + size
         adjustment = Adjustment(near={key: near}, far={key: max(arm, size)})
-        raise _out_of_reach(what, "cam.prime_radius_mm", parts, size, low, high, adjustment)
+        raise _out_of_reach(what, "cam.prime_radius_mm", parts, size, limits, adjustment)
     return follower.starting_at(size)
 
 
-def _swinging_face(pivot: float, offset: float, size: float) -> FlatArm:
-    if not abs(size + offset) < pivot:
-        what, parts = "the face cannot touch the base circle", "pivot and face offset"
-        low, high, adjustment = (
-            -pivot - offset,
-            pivot - offset,
-            Adjustment(far={"follower.face_offset_mm": 0.0}),
-        )
-        raise _out_of_reach(what, "cam.base_radius_mm", parts, size, low, high, adjustment)
-    return FlatArm(start=0.0, pivot=pivot, offset=offset).starting_at(size)
-
-
 def _out_of_reach(
-    what: str, key: str, parts: str, size: float, low: float, high: float, adjustment: Adjustment
+    what: str,
+    key: str,
+    parts: str,
+    size: float,
+    limits: tuple[float, float],
+    adjustment: Adjustment,
 ) -> InfeasibleError:
-    """Return the error for a size outside the range that the parts allow."""
-    least = max(low, 0.0)
+    """Return the error for a size that is not between the limits that the parts allow."""
+    (low, high), least = limits, max(limits[0], 0.0)
     rule = f"{parts} allow sizes between {formatted(least)} and {formatted(high)} mm"
     adjustments = (adjustment,)
     if high > 0.0:  # from the limit that the size exceeds to the middle of the allowed range

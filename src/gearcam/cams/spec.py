@@ -241,14 +241,16 @@ class PlateFollower(FollowerSpec):
     rules = (
         *GUIDE_RULES,
         excluded(
-            "type", "flat", why="over a translating cam a flat face envelops no profile",
+            "type",
+            "flat",
+            why="over a translating cam a flat face envelops no profile",
             allowed='"roller", "domed" or "point"',
         ),
         only_with(("axis",), "motion", "translating", why=_NO_ARM),
         only_with(
             ("pivot_height",), "motion", "oscillating", why="a translating follower has no pivot"
         ),
-    )  # fmt: skip
+    )
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -28,11 +28,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearcam.base.display import ShortRepr
+from gearcam.cams.follower_loads import DrivenMotion, Loads
 from gearcam.cams.followers import Follower
-from gearcam.cams.supports import Push, Support, TotalLoad
+from gearcam.cams.supports import Push, Support
 from gearcam.cams.wall import Wall
-from gearcam.mechanics.friction import FrictionSpec
-from gearcam.numeric.arrays import Array, Ints, Mask, Plane
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane, lengths_along
 
 _ROUNDING = 1e-12
 """Load over the largest that is rounding."""
@@ -94,21 +94,17 @@ class Touch(ShortRepr):
         s, ds = self.wall.program.derivatives(x, 1)
         return x, s, ds
 
-    def push(
-        self, x: Array, ds: Array, support: Support, share: float, way: Array | float = 1.0
-    ) -> tuple[Push, Array]:
+    def push(self, motion: DrivenMotion, support: Support, share: float) -> tuple[Push, Array]:
         """Return the force of the wall, and the speed of sliding.
 
         Parameters
         ----------
-        x, ds : (n,) arrays
-            Positions of the driver, and velocities of the follower.
+        motion : DrivenMotion
+            The motion of the follower, at n positions of the driver.
         support : Support
             What holds the follower.
         share : float
             Tangential force over normal force.
-        way : 1 or -1, or (n,) array
-            Whether the driver goes forward, or back.
 
         Returns
         -------
@@ -117,13 +113,14 @@ class Touch(ShortRepr):
         slide : (n,) array, mm per unit of the driver's way
             Velocity of the cam past the follower's end, along the tangent.
         """
+        x = motion.x
         _, s, own = self._state(x)
         wall, touching = self.wall, self.wall.follower
         inset = wall.side * touching.radius
         at, tangent = touching.trace(wall.carrier, np.zeros_like(x), touching.start + s, own, inset)
         if self.across:
             at, tangent = -at, -tangent
-        past = way * wall.carrier.passing(at) - support.velocity(at) * ds
+        past = motion.way * wall.carrier.passing(at) - support.velocity(at) * motion.ds
         return pushing(at, tangent, past, share, wall.side)
 
     def along(self, x: Array) -> Array:
@@ -132,7 +129,7 @@ class Touch(ShortRepr):
         wall, touching = self.wall, self.wall.follower
         inset = wall.side * touching.radius
         path, _ = touching.trace(wall.carrier, x, touching.start + s, ds, inset)
-        return np.concatenate([[0.0], np.cumsum(np.abs(np.diff(path)))])
+        return lengths_along(path)
 
     def curvature(self, x: Array) -> Array:
         """Return the relative curvature of wall and follower, 1/mm; infinite on an edge."""
@@ -215,13 +212,9 @@ class Statics(ShortRepr):
 
 def solve(
     touches: Sequence[Touch],
-    support: Support,
-    x: Array,
-    ds: Array,
-    total_load: TotalLoad,
-    friction: FrictionSpec,
+    loads: Loads,
+    motion: DrivenMotion,
     share: Callable[[float], float],
-    way: Array | float = 1.0,
 ) -> Statics:
     """Return the forces of a cam on its follower.
 
@@ -229,23 +222,19 @@ def solve(
     ----------
     touches : sequence of Touch
         Where the cam can press.
-    support : Support
-        What holds the follower.
-    x, ds : (n,) arrays
-        Positions of the driver, and velocities of the follower.
-    total_load : TotalLoad
-        What has to be moved.
-    friction : FrictionSpec
-        Coefficients.
+    loads : Loads
+        What acts on the follower beside the cam.
+    motion : DrivenMotion
+        The motion of the follower, at n positions of the driver; torque is by the driver's way.
     share : callable
         ``share(radius)`` returns tangential over normal force of an end of that radius, mm.
-    way : 1 or -1, or (n,) array
-        Whether the driver goes forward, or back; velocities and torque are by its way.
 
     Returns
     -------
     Statics
     """
+    support, friction, total_load = loads.support, loads.friction, loads.total_load(motion)
+    x, ds, way = motion.x, motion.ds, motion.way
     count = x.shape
     force, reserve = np.full(count, np.nan), np.full(count, np.nan)
     carrying, locked = np.full(count, -1), np.zeros(count, dtype=bool)
@@ -257,7 +246,7 @@ def solve(
         holding[np.abs(holding) <= _ROUNDING * np.abs(total_load.against).max(initial=0.0)] = 0.0
     for number, touch in enumerate(touches):
         part = share(touch.end.radius)
-        push, slide = touch.push(x, ds, support, part, way)
+        push, slide = touch.push(motion, support, part)
         asked = holding * support.lifting(push.normal, push.at) >= 0.0
         found, left = support.normal_force(push, total_load, friction)
         stuck = asked & (left <= 0.0)

@@ -268,6 +268,25 @@ class StraightGuide(Support):
         return columns
 
 
+def guide(direction: complex, foot: complex, beyond: float, friction: FrictionSpec) -> Support:
+    """Return a guide of a stem.
+
+    Parameters
+    ----------
+    direction : complex
+        Along the stem, away from the cam.
+    foot : complex, mm
+        From where its height counts.
+    beyond : float, mm
+        Height above which it begins if it has no given place.
+    friction : FrictionSpec
+        With its length and place.
+    """
+    length = friction.guide_length or 0.0
+    height = beyond + 0.5 * length if friction.guide_at is None else friction.guide_at
+    return StraightGuide(direction=direction, middle=foot + height * direction)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Pivot(Support):
     """A pivot about which the follower swings.

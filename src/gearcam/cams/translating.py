@@ -73,6 +73,12 @@ class Plate(ShortRepr):
     low: float
     high: float
 
+    @property
+    def corners(self) -> tuple[complex, complex, complex, complex]:
+        """Its corners, counter-clockwise, from the lower left one."""
+        low, high = 1j * self.low, 1j * self.high
+        return self.left + low, self.right + low, self.right + high, self.left + high
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class TranslatingWall(Wall):
@@ -116,15 +122,13 @@ class TranslatingWall(Wall):
 
     @cached_property
     def _metal(self) -> Contour:
-        plate = self.plate
-        edge = plate.low if self.side > 0 else plate.high
+        plate, lower = self.plate, self.side > 0
         left, last = self._level(-1, plate.left)
         right, first = self._level(0, plate.right)
-        corners = np.array([
-            last, complex(plate.left, last.imag), complex(plate.left, edge),
-            complex(plate.right, edge), complex(plate.right, first.imag), first,
-        ])  # fmt: skip
-        if self.side > 0:
+        far = plate.corners[:2] if lower else plate.corners[:1:-1]
+        ends = complex(plate.left, last.imag), complex(plate.right, first.imag)
+        corners = np.array([last, ends[0], *far, ends[1], first])
+        if lower:
             around = [self.stretch(), *left, straight(corners), *_turned(right)]
         else:  # the metal lies above, the wall runs from left to right
             back = straight(corners[::-1])
@@ -217,15 +221,10 @@ class TranslatingCam(ShortRepr, Cam):
     @cached_property
     def edge(self) -> Contour:
         """The plate's outline, including the wall of a cam with one wall."""
-        plate = self.plate
         if self.upper is None:
             return self.lower.contour
-        start = complex(plate.left, plate.low)
-        corners = [
-            start, complex(plate.right, plate.low), complex(plate.right, plate.high),
-            complex(plate.left, plate.high), start,
-        ]  # fmt: skip
-        return joined([straight(np.array(corners))], self.lower)
+        corners = self.plate.corners
+        return joined([straight(np.array([*corners, corners[0]]))], self.lower)
 
     @cached_property
     def groove(self) -> Contour | None:
@@ -236,16 +235,17 @@ class TranslatingCam(ShortRepr, Cam):
         right, left = lower.pitch_line[[0, -1]].tolist()
         start, end = complex(lower.line[0]), complex(upper.line[-1])
         stretches = [
-            lower.stretch(reverse=True), arc(lower, right, start, math.pi),
-            upper.stretch(), arc(lower, left, end, math.pi),
-        ]  # fmt: skip
+            lower.stretch(reverse=True),
+            arc(lower, right, start, math.pi),
+            upper.stretch(),
+            arc(lower, left, end, math.pi),
+        ]
         return joined(stretches, lower)
 
     def picture(self) -> str:
         """Return a drawing of plate, groove and pitch curve, SVG, in the cam's frame."""
-        edges = (
-            [self.edge.points] if self.groove is None else [self.edge.points, self.groove.points]
-        )
+        groove = [] if self.groove is None else [self.groove.points]
+        edges = [self.edge.points, *groove]
         return renderer().outlines(self.facts.headline, edges, [self.lower.pitch_line])
 
 

@@ -78,6 +78,16 @@ class PitchMotion(ShortRepr):
     key: str = ""
     called: str = "profile"
 
+    @property
+    def ending(self) -> str:
+        """What its key adds to names of files and columns; empty for a cam's only motion."""
+        return f"_{self.key}" if self.key else ""
+
+    @property
+    def hand(self) -> float:
+        """1 of a cam that turns counter-clockwise, -1 of one that is mirrored in the y axis."""
+        return -1.0 if self.clockwise else 1.0
+
     @cached_property
     def pitch_curve(self) -> CamCurve:
         """The pitch curve, or the profile below a face, of the cam turning counter-clockwise."""

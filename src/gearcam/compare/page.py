@@ -12,7 +12,7 @@ from gearcam.compare.table import rows
 from gearcam.compare.variants import Variant
 from gearcam.numeric.pose import Pose
 from gearcam.pictures import drawings
-from gearcam.pictures.charts import Chart, Limit, MarkedPlace
+from gearcam.pictures.charts import Chart, Limit
 from gearcam.pictures.scenes import PLACES, MovingBody, Scene
 from gearcam.report.data import chart_data, scene_data
 from gearcam.report.page import BLOCKS, rendered, verdict
@@ -85,17 +85,8 @@ def joined(name: str, variants: Sequence[Variant]) -> Chart:
             for line in chart.lines
         ]
         limits += [(label, limit) for limit in chart.limits]
-    return replace(
-        first,
-        lines=(*lines,),
-        limits=_limits(limits),
-        marks=_common([chart.marks for _, chart in charts]),
-    )
-
-
-def _common(marks: Sequence[tuple[MarkedPlace, ...]]) -> tuple[MarkedPlace, ...]:
-    """Return the marked places that all variants share."""
-    return tuple(one for one in marks[0] if all(one in others for others in marks))
+    shared = (mark for mark in first.marks if all(mark in chart.marks for _, chart in charts))
+    return replace(first, lines=(*lines,), limits=_limits(limits), marks=(*shared,))
 
 
 def _limits(limits: Sequence[tuple[str, Limit]]) -> tuple[Limit, ...]:

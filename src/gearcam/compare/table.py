@@ -76,19 +76,15 @@ def rows(variants: Sequence[Variant], *, every: bool = False) -> tuple[Row, ...]
 
 
 def _row(facts: Sequence[NamedFact | None]) -> Row:
+    """Return a row of facts; the limit stands in each cell where it is not that of all."""
     there = [one for one in facts if one is not None]
     limits = {one.limit for one in there}
     common = limits.pop() if len(limits) == 1 else ""
-    return Row(
-        name=there[0].name,
-        meaning=there[0].meaning,
-        cells=tuple("" if one is None else _cell(one, common) for one in facts),
-        limit=common,
+    cells = tuple(
+        "" if fact is None else fact.text + f" ({fact.limit})" * (fact.limit != common)
+        for fact in facts
     )
-
-
-def _cell(fact: NamedFact, common: str) -> str:
-    return fact.text if fact.limit == common else f"{fact.text} ({fact.limit})"
+    return Row(name=there[0].name, meaning=there[0].meaning, cells=cells, limit=common)
 
 
 def lines(variants: Sequence[Variant], *, every: bool = False) -> Iterator[str]:

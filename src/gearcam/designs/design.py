@@ -17,7 +17,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import InitVar, dataclass, field, fields, is_dataclass
 from functools import cached_property
-from typing import Any, ClassVar, Final, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 
 from gearcam.base.display import cut
 from gearcam.base.errors import DesignError, InfeasibleError, Problem
@@ -57,6 +57,8 @@ class Design:
         Limits of checks by name, in mm and rad; others have their defaults.
     output : OutputSpec
         Files to write and their tolerance.
+    added : mapping of str to object
+        What tables hold that other packages bring, by title; each is an attribute, too.
     examined : bool
         Whether the values have been validated already.
 
@@ -82,6 +84,7 @@ class Design:
     source: str = ""
     limits: Limits = field(default_factory=dict)
     output: OutputSpec = field(default_factory=OutputSpec)
+    added: Mapping[str, Any] = field(default_factory=dict)
     examined: InitVar[bool] = False
 
     def __post_init__(self, examined: bool) -> None:
@@ -90,6 +93,8 @@ class Design:
         if not examined:
             for item in fields(self):
                 object.__setattr__(self, item.name, settled(getattr(self, item.name)))
+            added = {title: settled(part) for title, part in self.added.items()}
+            object.__setattr__(self, "added", added)
         self._settle()
         variants = KINDS[self.kind].variants
         for title in variants.titles if variants else ():
@@ -99,6 +104,19 @@ class Design:
             faults = examine(document_of(self)).faults
             if faults:
                 raise DesignError(fault.problem(self.source) for fault in faults)
+
+    if not TYPE_CHECKING:  # type checkers then find misspelt names
+
+        def __getattr__(self, name: str) -> Any:
+            """Return what a table of another package holds."""
+            if not name.startswith("_"):
+                added, kind = vars(self).get("added", {}), KINDS[self.kind]
+                if name in added:
+                    return added[name]
+                kind.take_brought()
+                if name in kind.added:
+                    return () if name in kind.several else kind.tables[name]()
+            raise AttributeError(f"{type(self).__name__} has no {name}", name=name, obj=self)
 
     def __eq__(self, other: object) -> bool:
         """Return whether another design has the same kind and values, regardless of its source."""
@@ -253,9 +271,13 @@ def _suiting(design: Design, title: str) -> Any:
 def _demand_types(design: Design) -> None:
     """Raise `DesignError` if a table, or what is nested in one, is not of its type."""
     kind = KINDS[design.kind]
+    titles = kind.titles_with(design.added)
+    if unknown := [title for title in design.added if title not in kind.added]:
+        what, rule = "is no table that another package brings", ", ".join(kind.added)
+        raise DesignError(Problem(what, design.source, key=one, allowed=rule) for one in unknown)
     parts = (
         one
-        for title in kind.tree
+        for title in titles
         for one in wanted(kind.node_of(design, title), getattr(design, title), title)
     )
     _demand_instances(design, (("limits", design.limits, (Mapping,)), *parts))
@@ -281,7 +303,9 @@ def _demand_instances(design: Design, wanted: Iterable[Wanted]) -> None:
 def nested_designs(design: Design) -> Iterator[tuple[Path, Design]]:
     """Yield the path and the design of each design nested in a `design`."""
     kind = KINDS[design.kind]
-    for title in kind.tables:
+    for title in kind.titles_with(design.added):
+        if title in kind.nodes:
+            continue
         node = kind.node_of(design, title)
         for at, table, part in tables_in(node, getattr(design, title), (title,)):
             for key, entry in table.entries.items():
@@ -304,9 +328,14 @@ def document_of(design: Design) -> dict[str, Any]:
     """
     kind = KINDS[design.kind]
     document: dict[str, Any] = {"kind": kind.name, "name": design.name}
-    plain = {one: written(kind.node(one, {}), getattr(design, one), {}) for one in kind.tables}
+    titles = kind.titles_with(design.added)
+    plain = {
+        one: written(kind.node(one, {}), getattr(design, one), {})
+        for one in titles
+        if one not in kind.nodes
+    }
     given = kind.circumstances(plain)
-    for title in kind.tree:
+    for title in titles:
         node = kind.nodes.get(title)
         document[title] = written(node, getattr(design, title), given) if node else plain[title]
     if design.limits:
@@ -387,7 +416,7 @@ def design(document: Mapping[str, Any], source: str = "") -> Any:
     outcome = examine(plain)
     if outcome.faults:
         raise DesignError(fault.problem(source) for fault in outcome.faults)
-    return KINDS[outcome.kind].design(source=source, examined=True, **outcome.parts)
+    return KINDS[outcome.kind].made(outcome.parts, source)
 
 
 def load(path: str | os.PathLike[str]) -> Design:
@@ -436,7 +465,7 @@ def loads(text: str, *, file: str = "") -> Design:
     outcome = examine_file(document, file)
     if outcome.faults:
         raise DesignError(problems_of(outcome.faults, text, file))
-    return KINDS[outcome.kind].design(source=file, examined=True, **outcome.parts)
+    return KINDS[outcome.kind].made(outcome.parts, file)
 
 
 def _plain(value: Any) -> Any:

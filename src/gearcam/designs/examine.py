@@ -196,12 +196,13 @@ def _examined(
         outcome.faults.append(later)
         return outcome
     outcome.kind = kind.name
+    titles = kind.titles_with(document)
     outcome.faults += _top_faults(document, kind)
     _examine_name(document, stem, outcome)
     reading = _reading(kind, document, outcome, place or Place())
     outcome.parts["limits"] = {}
     # the table of limits loads the checks
-    for title in (*kind.tree, *(("limits",) if "limits" in document else ())):
+    for title in (*titles, *(("limits",) if "limits" in document else ())):
         _examine_title(document, kind, title, reading, outcome)
     if kind.rules:
         tables = {title: kind.table_in(document, title) for title in kind.tables}
@@ -519,7 +520,7 @@ def _in_place(
     outcome = examine({"kind": name, **value}, stem=str(at[-1]), place=place)
     if outcome.faults:
         return None, [_outward(fault, at, KINDS[name].titles) for fault in outcome.faults]
-    return KINDS[outcome.kind].design(source=place.file, examined=True, **outcome.parts), []
+    return KINDS[outcome.kind].made(outcome.parts, place.file), []
 
 
 def _unfit(key: Key, kind: DesignKind, document: Mapping[str, Any]) -> tuple[Path, str, str] | None:
@@ -585,7 +586,7 @@ def _from_file(key: Key, value: str, at: Path, place: Place) -> tuple[Any, list[
             fault if fault.file else replace(fault, file=file, line=line_at(lines, fault.path))
             for fault in outcome.faults
         ]
-    return KINDS[outcome.kind].design(source=file, examined=True, **outcome.parts), []
+    return KINDS[outcome.kind].made(outcome.parts, file), []
 
 
 def nested_in(document: Mapping[str, Any]) -> Iterator[tuple[Path, Key, Any]]:

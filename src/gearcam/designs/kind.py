@@ -18,13 +18,14 @@ from inspect import get_annotations
 from types import SimpleNamespace
 from typing import Any, Final, Protocol, get_args, get_type_hints
 
+from gearcam.base.brought import brought, group_of, load_brought
 from gearcam.base.findings import CHECKS
 from gearcam.base.quantities import params_of
+from gearcam.base.registry import OpenMapping
 from gearcam.base.rules import Rule
 from gearcam.designs.faults import Fault
 from gearcam.designs.lines import Path
 from gearcam.designs.nodes import Circumstances, Keys, Many, Node, choices_in, tables_in
-from gearcam.designs.outputs import OutputSpec
 from gearcam.designs.slips import cam_of, keyed, nearest
 from gearcam.designs.table import Key, Table, table_of
 
@@ -173,6 +174,8 @@ class DesignKind:
         ``circumstances(document)`` returns what the units of its keys depend on.
     variants : Variants, optional
         What decides on the keys of some tables.
+    studies : mapping of str to Study
+        Studies by name; each is a command, too (see `gearcam.results.kind`).
     required : tuple of str
         Titles of tables that a file must have.
     rules : tuple of Rule
@@ -188,12 +191,15 @@ class DesignKind:
         Groups of those checks: what they look at.
     example : mapping
         A design that builds without a warning, by title, in the units of a file.
-    shown : mapping of str to mapping
+    samples : mapping of str to mapping
         Values that the template shows of optional keys, by title: where each kind has its own.
     notes : mapping of str to str
         Comments on tables of the example.
     processes : mapping of str to mapping
         Additions to the example for each process: ``printing``, ``laser`` or ``wire``.
+    brought : str
+        Group of the tables that other packages bring and that a file may give several times; empty
+        if they cannot. The settings of their studies are tables anyway.
     """
 
     name: str
@@ -204,6 +210,7 @@ class DesignKind:
     nodes: Mapping[str, Node] = field(default_factory=dict)
     circumstances: Callable[[Mapping[str, Any]], Circumstances] = lambda _: {}
     variants: Variants | None = None
+    studies: OpenMapping[Any] = field(default_factory=OpenMapping)
     required: tuple[str, ...]
     rules: tuple[Rule, ...] = ()
     problems: Callable[[Mapping[str, Any], Examined], Iterable[Fault]] = lambda *_: ()
@@ -211,17 +218,53 @@ class DesignKind:
     check_modules: tuple[str, ...] = ()
     check_groups: tuple[str, ...] = ()
     example: Mapping[str, Any]
-    shown: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    samples: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     notes: Mapping[str, str] = field(default_factory=dict)
     processes: Mapping[str, Mapping[str, Mapping[str, Any]]] = field(default_factory=dict)
+    brought: str = ""
 
     def __repr__(self) -> str:
         return f'<{type(self).__name__} "{self.name}">'
 
     @cached_property
+    def added(self) -> dict[str, Any]:
+        """Tables that other packages bring, as in `tree`; none before `take_brought`."""
+        return {}
+
+    @cached_property
     def tree(self) -> Mapping[str, Any]:
         """The titles of a file with the types of their fields, as the class of designs has them."""
-        return get_annotations(self.design)
+        return get_annotations(self.design) | self.added
+
+    def take_brought(self) -> None:
+        """Know the tables that other packages bring, too: parts, and settings of studies.
+
+        Raises
+        ------
+        DesignError
+            If a package cannot be loaded.
+        """
+        studies = group_of(self.name, "studies")
+        found = {
+            title: tuple[load_brought(self.brought, title), ...] for title in brought(self.brought)
+        }
+        found |= {title: load_brought(studies, title).settings for title in brought(studies)}
+        if new := {title: one for title, one in found.items() if title not in self.tree}:
+            self.added.update(new)
+            for name in ("tree", "several", "tables"):
+                vars(self).pop(name, None)
+
+    def made(self, parts: Mapping[str, Any], source: str) -> Any:
+        """Return the design of valid `parts` by the names of its fields, from a file `source`."""
+        added = {title: part for title, part in parts.items() if title in self.added}
+        own = {name: part for name, part in parts.items() if name not in added}
+        return self.design(source=source, examined=True, added=added, **own)
+
+    def titles_with(self, given: Collection[str]) -> list[str]:
+        """Return the titles of its own tables, and those of other packages that are `given`."""
+        if any(title not in self.titles for title in given):
+            self.take_brought()
+        return [title for title in self.tree if title not in self.added or title in given]
 
     @cached_property
     def several(self) -> tuple[str, ...]:
@@ -249,15 +292,15 @@ class DesignKind:
         return ("kind", "name", *self.tree, "limits", *FAMILY)
 
     @property
-    def formats(self) -> tuple[str, ...]:
+    def formats(self) -> Collection[str]:
         """Kinds of files that ``output.files`` may list."""
         return params_of(self.tables["output"])["files"].choices or ()
 
     @property
     def study_tables(self) -> Mapping[str, str]:
         """Titles of the tables with the settings of studies, by the names of the studies."""
-        output: type[OutputSpec] = self.tables["output"]
-        return output.study_tables
+        own = {name: one.table for name, one in self.studies.own.items()}
+        return own | {title: title for title in self.added if title not in self.several}
 
     def meant(self, document: Mapping[str, Any]) -> DesignKind:
         """Return the kind that a `document` of this kind is of: another one for some variants."""

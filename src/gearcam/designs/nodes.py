@@ -18,7 +18,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, TypeAlias
 
-from gearcam.base.registry import Registry, name_of
+from gearcam.base.registry import Registry
 from gearcam.base.rules import Breach
 from gearcam.designs.faults import Fault, quoted
 from gearcam.designs.lines import Path
@@ -125,7 +125,7 @@ class Choice:
     def word_of(self, made: object) -> str:
         """Return the word for what is chosen; empty if there is none."""
         if isinstance(self.entries, Registry):
-            return name_of(self.entries, made)
+            return self.entries.name_of(made)
         return next((word for word, owner in self.entries.items() if owner is type(made)), "")
 
     @property

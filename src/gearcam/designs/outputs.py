@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection
 from dataclasses import dataclass
-from typing import Any, ClassVar, Final
+from typing import Any, Final
 
+from gearcam.base.brought import Words, group_of
 from gearcam.base.display import ShortRepr
 from gearcam.base.quantities import ANGLE, FINEST, LENGTH, TEXT, allowance, param
 from gearcam.base.rules import distinct, excluded
@@ -20,17 +21,18 @@ FORMATS: Final = (
 """Kinds of files that ``output.files`` may list."""
 
 _FILES: Final = "files to write; summary.json is always written"
+_STUDIES: Final = "studies to include in summary and report, by the names of their commands"
 
 
-def files_param(formats: tuple[str, ...]) -> Any:
-    """Return the field of the files to write, any of some `formats`."""
-    return param(TEXT, default=("csv",), choices=formats, doc=_FILES)
+def files_param(formats: tuple[str, ...], kind: str) -> Any:
+    """Return the field of the files to write of a `kind` of design, any of some `formats`."""
+    words = Words(formats, group_of(kind, "formats"))
+    return param(TEXT, default=("csv",), choices=words, doc=_FILES)
 
 
-def studies_param(tables: Mapping[str, str]) -> Any:
-    """Return the field of the studies to include, any of those with some `tables` of settings."""
-    doc = "studies to include in summary and report, by the names of their commands"
-    return param(TEXT, default=(), choices=tuple(tables), doc=doc)
+def studies_param(studies: Collection[str]) -> Any:
+    """Return the field of the studies to include, any of those of a kind."""
+    return param(TEXT, default=(), choices=studies, doc=_STUDIES)
 
 
 def pose_param(word: str, doc: str) -> Any:
@@ -56,11 +58,8 @@ class OutputSpec(ShortRepr):
         How outlines are drawn, and the version of the files.
     """
 
-    study_tables: ClassVar[Mapping[str, str]] = {}
-    """Titles of the tables with the settings of studies, by the names of the studies."""
-
-    files: tuple[str, ...] = files_param(FORMATS)
-    studies: tuple[str, ...] = studies_param(study_tables)
+    files: tuple[str, ...] = param(TEXT, default=("csv",), choices=FORMATS, doc=_FILES)
+    studies: tuple[str, ...] = studies_param(())
     chord_tolerance: float | None = param(
         LENGTH,
         default=None,

@@ -40,6 +40,7 @@ def schema() -> Schema:
     """
     definitions: Schema = {}
     for kind in KINDS.values():
+        kind.take_brought()
         parts: Schema = {}
         for title in (*kind.tree, "limits"):
             home = title if title in kind.nodes else f"{kind.name}-{title}"

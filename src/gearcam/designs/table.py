@@ -115,7 +115,7 @@ class Table:
     entries: Mapping[str, Key]
 
     @property
-    def words(self) -> dict[str, tuple[str, ...]]:
+    def words(self) -> dict[str, Collection[str]]:
         """The words that single values may be, by dotted key."""
         return {
             f"{self.title}.{key}": entry.param.choices

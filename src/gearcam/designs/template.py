@@ -91,7 +91,7 @@ def _lines(kind: DesignKind, name: str, process: str) -> Iterator[str]:
             yield from _node(kind.nodes[title], title, given, note)
             continue
         head = f"[[{title}]]" if title in kind.several else f"[{title}]"
-        table = _shown(kind.table(title), kind.shown.get(title, {}))
+        table = _shown(kind.table(title), kind.samples.get(title, {}))
         for one in given if isinstance(given, list) else [given]:
             yield from _table(head, table, {**one, **more.get(title, {})}, note)
 

@@ -196,7 +196,7 @@ def joined(pieces: Sequence[DrawnPiece], gap: float = JOINED) -> list[DrawnPiece
 
 def _joined_at(pieces: list[DrawnPiece], gap: float) -> list[DrawnPiece]:
     """Return pieces joined where the ends of two, and of no third, are up to a gap apart."""
-    found = {number: piece for number, piece in enumerate(pieces) if piece.closed}
+    numbered = {number: piece for number, piece in enumerate(pieces) if piece.closed}
     loose = [k for k, one in enumerate(pieces) if not one.closed and sum(one.size) > gap]
     if len(loose) < 2:
         return pieces
@@ -217,8 +217,8 @@ def _joined_at(pieces: list[DrawnPiece], gap: float) -> list[DrawnPiece]:
         parts = parts[first:] + parts[:first] if whole else parts
         points = np.concatenate([part.points[:-1] for part in parts] + [parts[-1].points[-1:]])
         chained = DrawnPiece(points, np.concatenate([part.bulges for part in parts]), closed=False)
-        found[min(one.payload for one in chain)] = _ended(chained, gap)
-    return [piece for _, piece in sorted(found.items())]
+        numbered[min(one.payload for one in chain)] = _ended(chained, gap)
+    return [piece for _, piece in sorted(numbered.items())]
 
 
 def _ended(piece: DrawnPiece, gap: float) -> DrawnPiece:

@@ -75,7 +75,7 @@ def measure_dxf(data: bytes, contours: Sequence[Contour], known: Known | None = 
     document = read_dxf(data)
     if document.dxfversion != _R12 and document.header.get("$INSUNITS") != MILLIMETRES:
         raise DxfError("the DXF file is not in millimetres")
-    drawn = [entity for entity in document.modelspace() if _layer(entity).endswith(CLOSED)]
+    drawn = [own for layer, own in entities_of(document.modelspace()) if layer.endswith(CLOSED)]
     every = joined(list(pieces_of(drawn)), _ROUNDING)
     # a pitch curve may be open; rims are circles, which are exact
     outlines = [outline for outline in every if outline.closed and not outline.whole_circle]
@@ -88,11 +88,6 @@ def measure_dxf(data: bytes, contours: Sequence[Contour], known: Known | None = 
         _error(outline.points, outline.bulges, contour, known)
         for outline, contour in zip(outlines, contours, strict=True)
     )
-
-
-def _layer(entity: Any) -> str:
-    """Return the layer of an entity; empty if ezdxf does not know its type."""
-    return entity.dxf.layer if entity.dxf.is_supported("layer") else ""
 
 
 def _error(points: Plane, bulges: Array, contour: Contour, known: Known) -> float:

@@ -26,6 +26,9 @@ from gearcam.base.display import ShortRepr
 from gearcam.base.numerals import decimal
 from gearcam.numeric.arrays import Array
 
+_DIGITS: int = 5
+"""Digits that count of an inverse time."""
+
 _LONGEST: int = 70
 """Longest comment: a line of grbl has at most 80 characters."""
 
@@ -89,8 +92,9 @@ def gcode_bytes(program: RotaryProgram) -> bytes:
 def _moved(program: RotaryProgram) -> Iterator[str]:
     """Yield the moves, in inverse time where they cut, and the start of the spindle."""
     words = _words(program)
-    down, beside = _parted(next(words))
-    yield f"G0 {beside}"
+    first = next(words)
+    down = next(word for word in first if word.startswith("Z"))
+    yield f"G0 {' '.join(word for word in first if word != down)}"
     if program.spindle is None:
         yield "(MSG, Start the spindle by hand, clockwise from above. Then resume.)"
         yield "M0"
@@ -104,17 +108,12 @@ def _moved(program: RotaryProgram) -> Iterator[str]:
             inverse = not inverse
             yield "G93" if inverse else "G94"
         if inverse:
-            yield f"G1 {' '.join(given)} F{_significant(rate)}"
+            feed = np.format_float_positional(rate, _DIGITS, fractional=False, trim="-")
+            yield f"G1 {' '.join(given)} F{feed}"
         else:
             yield f"G0 {' '.join(given)}"
     if inverse:
         yield "G94"
-
-
-def _parted(words: list[str]) -> tuple[str, str]:
-    """Return the word of Z, and the others."""
-    down = next(word for word in words if word.startswith("Z"))
-    return down, " ".join(word for word in words if word != down)
 
 
 def _words(program: RotaryProgram) -> Iterator[list[str]]:
@@ -137,11 +136,6 @@ def _words(program: RotaryProgram) -> Iterator[list[str]]:
 def _short(value: float, places: int) -> str:
     """Return a number in so many decimals, without a minus before zero."""
     return f"{round(value, places) + 0.0:.{places}f}"
-
-
-def _significant(value: float) -> str:
-    """Return a number with five digits that count."""
-    return np.format_float_positional(value, 5, fractional=False, trim="-")
 
 
 def _wrapped(note: str) -> Iterator[str]:

@@ -21,7 +21,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.parts.solids import Mesh, SolidError, libraries
+from gearcam.numeric.mesh import Mesh
+from gearcam.parts.solids import SolidError, libraries
 
 if TYPE_CHECKING:
     from trimesh import Scene, Trimesh
@@ -169,9 +170,7 @@ def _single(mesh: Mesh, name: str) -> Mesh:
     new = np.append(True, (np.diff(rounded[order], axis=0) != 0.0).any(axis=1))
     index = np.empty_like(order)
     index[order] = np.cumsum(new) - 1
-    places, triangles = rounded[order[new]], index[mesh.triangles]
-    a, b, c = triangles.T
-    single = Mesh(vertices=places, triangles=triangles[(a != b) & (b != c) & (c != a)])
+    single = mesh.joined(index, rounded[order[new]])
     _require(single, name, " in single precision")
     return single
 

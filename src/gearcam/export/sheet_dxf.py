@@ -119,11 +119,26 @@ def _prepare(document: Document, sheet: Sheet, style: DxfStyle) -> None:
     document.header["$LWDISPLAY"] = 1
     made = document.dimstyles.new(STYLE)
     values = {
-        "dimscale": unit, "dimtxt": HEIGHT, "dimasz": ARROW, "dimgap": GAP, "dimexo": LEAST_GAP,
-        "dimexe": PAST, "dimdec": 3, "dimzin": 8, "dimdsep": ord("."), "dimtad": 1, "dimtih": 0,
-        "dimtoh": 0, "dimtix": 0, "dimtofl": 0, "dimcen": 0.0, "dimtxsty": STYLE, "dimclrt": 7,
-        "dimtmove": 1, "dimlunit": 2,
-    }  # fmt: skip
+        "dimscale": unit,
+        "dimtxt": HEIGHT,
+        "dimasz": ARROW,
+        "dimgap": GAP,
+        "dimexo": LEAST_GAP,
+        "dimexe": PAST,
+        "dimdec": 3,
+        "dimzin": 8,
+        "dimdsep": ord("."),
+        "dimtad": 1,
+        "dimtih": 0,
+        "dimtoh": 0,
+        "dimtix": 0,
+        "dimtofl": 0,
+        "dimcen": 0.0,
+        "dimtxsty": STYLE,
+        "dimclrt": 7,
+        "dimtmove": 1,
+        "dimlunit": 2,
+    }
     for name, value in values.items():
         made.set_dxf_attrib(name, value)
 

@@ -467,26 +467,26 @@ def tips_collide(subject: CheckedPair, limit: float) -> Iterator[Remark]:
 
     Looks at: the tips of wheel 1 as they enter and leave the ring.
     """
-    found = subject.tip_pass
-    if found is None or found.margin >= limit:
+    passing = subject.tip_pass
+    if passing is None or passing.margin >= limit:
         return
     message = "Tips pass each other by little outside the mesh."
-    if found.margin < 0.0:
+    if passing.margin < 0.0:
         message = (
             "Tips collide outside the mesh: as it enters or leaves the ring, a tip corner of wheel "
-            f"1 overlaps a tooth of the ring by {formatted(-found.margin)} mm along the pitch "
+            f"1 overlaps a tooth of the ring by {formatted(-passing.margin)} mm along the pitch "
             "curve."
         )
-    if found.margin < -0.5 * subject.pair.toothings[1].pitch:  # no tooth is as wide
+    if passing.margin < -0.5 * subject.pair.toothings[1].pitch:  # no tooth is as wide
         message = (
             "The wheel does not fit into its ring: outside the mesh a tip corner of wheel 1 passes "
             "through the ring's teeth into its rim."
         )
     yield Remark(
         message,
-        f"wheel 1, tooth {found.tooth}, {angle_text(found.phi1)}",
-        found.margin,
-        severity="error" if found.margin < 0.0 else "warning",
+        f"wheel 1, tooth {passing.tooth}, {angle_text(passing.phi1)}",
+        passing.margin,
+        severity="error" if passing.margin < 0.0 else "warning",
     )
 
 

@@ -30,12 +30,12 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from gearcam.base.display import ShortRepr
+from gearcam.gears.contact_arcs import ContactArcs
 from gearcam.gears.flank import Toothing
 from gearcam.gears.rolling import Guide
-from gearcam.gears.track import WHEELS, Frames, Track, Wheel
+from gearcam.gears.track import Frames, Track
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.roots import damped_newton, solve
 
@@ -49,12 +49,6 @@ DRIVE, COAST = -1, 1
 
 _EVEN = 1e-12
 """Rounding of flank positions, in pitches."""
-
-_ONE = 1e-12
-"""Ends of arcs closer than this, in travels, are the same: rounding."""
-
-_ALIKE = 1e-9
-"""Contact ratios closer than this are equal: rounding separates what symmetry makes equal."""
 
 _SMALL = 1e-7
 """Step, in pitches, after which the next one is below rounding."""
@@ -95,131 +89,157 @@ class Mounting(ShortRepr):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class FlankPairs(ShortRepr):
-    """The pairs of flanks of one side of two mounted wheels, numbered by j.
+class WheelFlanks(ShortRepr):
+    """The flanks on one side of a wheel's teeth, by the number j of their pair (see `FlankPairs`).
 
     Parameters
     ----------
-    toothings : (Toothing, Toothing)
-        Driver and driven wheel.
+    toothing : Toothing
+        The wheel.
+    sigma : {-1, +1}
+        Side of its teeth.
+    flanks : Flanks
+        The finished flanks of both sides, with their errors of pitch.
+    eccentric : complex, mm
+        Offset of its teeth from its shaft, in the wheel's frame.
+    behind : {0, 1}
+        The count of its tooth in pair j is j less this.
+    """
+
+    toothing: Toothing
+    sigma: int
+    flanks: Flanks
+    eccentric: complex
+    behind: int
+
+    def number(self, j: Ints) -> Ints:
+        """Return the numbers of its teeth in pairs `j`."""
+        count = j - self.behind
+        return (count % self.toothing.teeth if self.toothing.closed else count) + 1
+
+    def _row(self, j: Ints) -> Ints:
+        """Return the indices of its flanks in `flanks`; the nearest for those that it lacks."""
+        formed = self.toothing.numbers
+        row = np.clip(self.number(j) - formed[0], 0, len(formed) - 1)
+        return row + (0 if self.sigma > 0 else len(formed))
+
+    def real(self, j: Ints) -> Mask:
+        """Return whether its flanks in pairs `j` exist: formed, and within its blank."""
+        if self.toothing.closed:
+            return np.ones(np.shape(j), dtype=bool)
+        number, place = self.number(j), self.place(j)
+        formed, (low, high) = self.toothing.numbers, self.toothing.ends
+        return (number >= formed[0]) & (number <= formed[-1]) & (place > low) & (place < high)
+
+    def place(self, j: Ints) -> Array:
+        """Return sf, mm, of its flanks in pairs `j`, counted on over all turns."""
+        places, toothing = self.flanks.sf[self._row(j)], self.toothing
+        if not toothing.closed:
+            return places
+        return places + (j - self.behind) // toothing.teeth * toothing.length
+
+    def reach(self, j: Ints) -> tuple[Array, Array]:
+        """Return the reach w, mm, of its flanks in pairs `j` at root and tip."""
+        row = self._row(j)
+        return self.flanks.lowest[row], self.flanks.highest[row]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class FlankPairs(ShortRepr):
+    """The pairs of flanks of one side of two mounted wheels, numbered by j.
+
+    Along the pitch curves the teeth of one wheel fill the spaces of the other. The teeth of both
+    are counted from 0 over all turns, and j is the count of the driver's::
+
+        driven wheel   tooth -1 |           |  tooth 0  |           |  tooth 1
+        driver                  |  tooth 0  |           |  tooth 1  |
+        s in pitches          -1/4         1/4         3/4         5/4
+        j of DRIVE              0                       1
+        j of COAST                          0                       1
+
+    Parameters
+    ----------
+    wheels : (WheelFlanks, WheelFlanks)
+        The flanks of driver and driven wheel.
     guide : Guide
         Guide of the driven wheel.
-    side : {-1, +1}
-        sigma of the driver's flanks.
     distance : complex, mm
         Mounted position of the driven frame (see `Mounting`).
-    flanks : (Flanks, Flanks)
-        The finished flanks of both wheels, with their errors of pitch.
-    eccentric : (complex, complex), mm
-        Offset of the teeth of both wheels from their shafts, in the wheel's frame.
     turns : int
         Turns of a closed driver after which both wheels are as before: 1 where all turns are alike.
     """
 
-    toothings: tuple[Toothing, Toothing]
+    wheels: tuple[WheelFlanks, WheelFlanks]
     guide: Guide
-    side: int
     distance: complex
-    flanks: tuple[Flanks, Flanks]
-    eccentric: tuple[complex, complex] = (0j, 0j)
     turns: int = 1
+
+    @property
+    def side(self) -> int:
+        """`DRIVE` or `COAST`: sigma of the driver's flanks."""
+        return self.wheels[0].sigma
 
     @property
     def track(self) -> Track:
         """The driver's track; the driven one shares its parameter and arc length."""
-        return self.toothings[0].track
+        return self.wheels[0].toothing.track
 
     @property
     def pitch(self) -> float:
         """Pitch, mm."""
-        return self.toothings[0].pitch
-
-    def sigma(self, wheel: Wheel) -> int:
-        """Return sigma of a wheel's flanks."""
-        return self.side if wheel == 1 else -self.side
+        return self.wheels[0].toothing.pitch
 
     @property
     def closed(self) -> bool:
         """Whether both wheels are closed (toothed all around)."""
-        return all(toothing.closed for toothing in self.toothings)
+        return all(wheel.toothing.closed for wheel in self.wheels)
 
     @cached_property
     def travel(self) -> float:
         """Driver angle of its `turns`, or of the travel of an open pair or a rack, rad."""
-        if self.toothings[0].closed == self.closed:
+        driver, driven = (wheel.toothing for wheel in self.wheels)
+        if driver.closed == self.closed:
             return self.track.around * self.turns
-        return float(self.track.angle(self.toothings[1].length))
-
-    def tooth(self, wheel: Wheel, j: Ints) -> Ints:
-        """Return tooth numbers of a wheel in pairs `j` (see `FlankPairs`)."""
-        toothing, count = self.toothings[wheel - 1], self._count(wheel, j)
-        return count % toothing.teeth + 1 if toothing.closed else count + 1
-
-    def _count(self, wheel: Wheel, j: Ints) -> Ints:
-        # sf = (j + side/4) pitches is (k + 1/2 - side/4) pitches on wheel 2.
-        return j if wheel == 1 or self.side > 0 else j - 1
-
-    def _flank(self, wheel: Wheel, j: Ints) -> Ints:
-        """Return the indices of flanks in the wheel's arrays; the nearest for flanks it lacks."""
-        toothing = self.toothings[wheel - 1]
-        size, tooth = len(toothing.numbers), self._count(wheel, j)
-        index = tooth % size if toothing.closed else tooth + 1 - toothing.numbers[0]
-        return np.clip(index, 0, size - 1) + (0 if self.sigma(wheel) > 0 else size)
+        return float(self.track.angle(driven.length))
 
     def real(self, j: Ints) -> Mask:
-        """Return whether the flanks of pairs `j` exist on both wheels (see `FlankPairs`)."""
-        result = np.ones(np.shape(j), dtype=bool)
-        for wheel, toothing in zip(WHEELS, self.toothings, strict=True):
-            if not toothing.closed:
-                number, (low, high) = self.tooth(wheel, j), toothing.ends
-                place = self.place(wheel, j)
-                result &= (number >= toothing.numbers[0]) & (number <= toothing.numbers[-1])
-                result &= (place > low) & (place < high)
-        return result
-
-    def place(self, wheel: Wheel, j: Ints) -> Array:
-        """Return sf, mm, of the flank of a wheel in pairs `j` (see `FlankPairs`)."""
-        toothing = self.toothings[wheel - 1]
-        places = self.flanks[wheel - 1].sf[self._flank(wheel, j)]
-        if not toothing.closed:
-            return places
-        return places + self._count(wheel, j) // toothing.teeth * (toothing.pitch * toothing.teeth)
-
-    def reach(self, wheel: Wheel, j: Ints) -> tuple[Array, Array]:
-        """Return the reach w, mm, of a wheel's flank at root and tip (see `FlankPairs`)."""
-        flanks, number = self.flanks[wheel - 1], self._flank(wheel, j)
-        return flanks.lowest[number], flanks.highest[number]
+        """Return whether the flanks of pairs `j` exist on both wheels."""
+        driver, driven = self.wheels
+        return driver.real(j) & driven.real(j)
 
     def separation(self, j: Ints) -> Array:
         """Return the separation sf2 - sf1 of the flanks of pairs `j`, mm."""
-        return self.place(2, j) - self.place(1, j)
+        driver, driven = self.wheels
+        return driven.place(j) - driver.place(j)
 
     @cached_property
     def even(self) -> bool:
         """Whether flanks are evenly spaced: pairs then touch together at any centre distance."""
-        if any(self.eccentric):
+        if any(wheel.eccentric for wheel in self.wheels):
             return False
-        found = self.separation(self.numbers)
-        return found.size == 0 or bool(np.ptp(found) <= _EVEN * self.pitch)
+        apart = self.separation(self.numbers)
+        return apart.size == 0 or bool(np.ptp(apart) <= _EVEN * self.pitch)
 
     @cached_property
     def numbers(self) -> Ints:
         """Numbers j of the pairs in the `turns` of the driver, or in the travel of an open pair."""
         if self.closed:
-            return np.arange(self.toothings[0].teeth * self.turns)
-        open_one = next(toothing for toothing in self.toothings if not toothing.closed)
+            return np.arange(self.wheels[0].toothing.teeth * self.turns)
+        open_one = next(wheel.toothing for wheel in self.wheels if not wheel.toothing.closed)
         j = np.arange(-3, open_one.teeth + 4)
         return j[self.real(j)]
 
     def candidates(self, s: Array) -> Ints:
         """Return the pairs that may touch at nominal rolls `s`, mm: (len(s), m)."""
         longest = max(
-            float(np.abs(end).max()) for f in self.flanks for end in (f.lowest, f.highest)
+            float(np.abs(end).max())
+            for flanks in (wheel.flanks for wheel in self.wheels)
+            for end in (flanks.lowest, flanks.highest)
         )
         width = math.ceil(longest / self.pitch + 0.5)
-        along = (s - self.toothings[0].moved) / self.pitch
-        middle = np.rint(along - 0.25 * self.side).astype(np.int64)
-        return middle[:, None] + np.arange(-width, width + 1)
+        along = (s - self.wheels[0].toothing.moved) / self.pitch
+        nearest = np.rint(along - 0.25 * self.side).astype(np.int64)
+        return nearest[:, None] + np.arange(-width, width + 1)
 
     def beside(self, phi1: Array) -> tuple[Ints, Ints]:
         """Return the pairs that may touch at phases `phi1`, rad: indices of the phases, and j."""
@@ -228,77 +248,40 @@ class FlankPairs(ShortRepr):
         return step, candidates[step, column]
 
     @cached_property
-    def _lobe(self) -> int:
-        """Number of pairs after which the contacts repeat."""
-        one, two = self.toothings
-        return math.gcd(one.teeth, two.teeth) if self.closed and self.even else len(self.numbers)
+    def arcs(self) -> ContactArcs:
+        """When each of the pairs `numbers` is in contact."""
+        # evenly spaced flanks do the same in each lobe
+        teeth = [wheel.toothing.teeth for wheel in self.wheels]
+        repeat = math.gcd(*teeth) if self.closed and self.even else len(self.numbers)
+        first, last = self._ends(self.numbers[:repeat]) if repeat else np.empty((2, 0))
+        lobes = self.track.arc.period * np.arange(len(self.numbers) // max(repeat, 1))[:, None]
+        return ContactArcs(
+            start=(first + lobes).ravel(),
+            end=(last + lobes).ravel(),
+            track=self.track,
+            pitch=self.pitch,
+            travel=self.travel,
+            closed=self.closed,
+        )
 
-    @cached_property
-    def arcs(self) -> tuple[Array, Array]:
-        """Driver angles, rad, at start and end of contact of each pair; start >= end if none."""
-        j, track = self.numbers[: self._lobe], self.track
-        if j.size == 0:
-            return np.empty(0), np.empty(0)
-        known, places = [], []
-        for wheel in WHEELS:
-            for reach in self.reach(wheel, j):
-                places.append(track.angle(self.place(wheel, j) - self.sigma(wheel) * reach))
-                known.append(np.full(j.shape, wheel))
-        start = np.concatenate(places)
-        ends, _, found = touch(self, start, np.tile(self.separation(j), 4), np.concatenate(known))
+    def _ends(self, j: Ints) -> tuple[Array, Array]:
+        """Return the driver angles, rad, at start and end of contact of pairs `j`."""
+        rolls = [
+            self.track.angle(wheel.place(j) - wheel.sigma * reach)
+            for wheel in self.wheels
+            for reach in wheel.reach(j)
+        ]
+        known = np.repeat([1, 1, 2, 2], j.size)
+        apart = np.tile(self.separation(j), 4)
+        ends, _, touching = touch(self, np.concatenate(rolls), apart, known)
         low1, high1, low2, high2 = ends.phi1.reshape(4, -1)
         first, last = np.maximum(low1, high2), np.minimum(high1, low2)
         if self.side == COAST:
             first, last = np.maximum(high1, low2), np.minimum(low1, high2)
         # where no end is found these teeth do not mesh
-        lost = ~found.reshape(4, -1).all(axis=0)
-        first[lost] = last[lost] = track.angle(self.place(1, j[lost]))
-        again: Array = np.arange(len(self.numbers) // self._lobe, dtype=float)[:, None]
-        lobes = track.arc.period * again
-        return (first + lobes).ravel(), (last + lobes).ravel()
-
-    @cached_property
-    def contact_ratios(self) -> Array:
-        """Contact ratio of each of the pairs `numbers`: arc of contact over pitch.
-
-        The driver's arc between the ends of tangency, along its pitch curve.
-        """
-        start, end = (self.track.arc_length(edge) for edge in self.arcs)
-        return np.maximum(end - start, 0.0) / self.pitch
-
-    @property
-    def weakest(self) -> int:
-        """Index of the smallest contact ratio; the first of those equal but for rounding."""
-        ratios = self.contact_ratios
-        return int(np.argmax(ratios <= ratios.min() + _ALIKE))
-
-    @cached_property
-    def stretches(self) -> tuple[Array, Array, Ints]:
-        """Intervals of the driver's `travel` by pairs in contact.
-
-        Driver angles of start and end, rad, and the number of pairs in contact: 1 on single-pair
-        arcs, 2 on double-pair arcs, 0 where no flanks touch.
-        """
-        turn = self.travel
-        start, end = (edge[self.arcs[1] > self.arcs[0]] for edge in self.arcs)
-        turns = np.arange(-1, 2)[:, None] if self.closed else np.zeros((1, 1))
-        start, end = ((edge + turn * turns).ravel() for edge in (start, end))
-        edges = np.clip(np.concatenate([start, end]), 0.0, turn)
-        edges = np.sort(np.concatenate([[0.0], edges, [turn]]))
-        edges = edges[np.append(np.diff(edges) > _ONE * turn, True)]
-        edges[0] = 0.0
-        middle = 0.5 * (edges[:-1] + edges[1:])
-        carrying = np.searchsorted(np.sort(start), middle, side="right")
-        carrying -= np.searchsorted(np.sort(end), middle, side="left")
-        first = np.flatnonzero(np.append(True, np.diff(carrying) != 0))
-        return edges[first], np.append(edges[first[1:]], turn), carrying[first]
-
-    def carrying(self, phi1: ArrayLike) -> Ints:
-        """Return the number of pairs in contact at phases `phi1`, rad."""
-        phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
-        start, end, pairs = self.stretches
-        x = np.mod(phi1, end[-1]) if self.closed else phi1
-        return pairs[np.clip(np.searchsorted(start, x, side="right") - 1, 0, len(pairs) - 1)]
+        lost = ~touching.reshape(4, -1).all(axis=0)
+        first[lost] = last[lost] = self.track.angle(self.wheels[0].place(j[lost]))
+        return first, last
 
 
 def flank_pairs(
@@ -319,19 +302,25 @@ def flank_pairs(
     -------
     FlankPairs
     """
-    first, second = gears
     if not isinstance(mounting, Mounting):
-        mounting = Mounting(distance=first.pair.shift if mounting is None else mounting)
-    one, two = (
-        _with_errors(gear, errors) for gear, errors in zip(gears, mounting.pitch, strict=True)
+        mounting = Mounting(distance=gears[0].pair.shift if mounting is None else mounting)
+    driver, driven = (
+        WheelFlanks(
+            toothing=gear.toothing,
+            sigma=sigma,
+            flanks=_with_errors(gear, errors),
+            eccentric=eccentric,
+            # sf = (j + side/4) pitches is (count + 1/2 - side/4) pitches on the driven wheel
+            behind=int(gear.wheel == 2 and side < 0),
+        )
+        for gear, sigma, errors, eccentric in zip(
+            gears, (side, -side), mounting.pitch, mounting.eccentric, strict=True
+        )
     )
     return FlankPairs(
-        toothings=(first.toothing, second.toothing),
-        guide=first.pair.rolling.guide,
-        flanks=(one, two),
-        side=side,
+        wheels=(driver, driven),
+        guide=gears[0].pair.rolling.guide,
         distance=mounting.distance,
-        eccentric=mounting.eccentric,
         turns=turns_of_cycle(gears) if mounting.turns_differ else 1,
     )
 
@@ -456,21 +445,18 @@ def normals(
     from ``dn/ds = +-1j*kappa*n`` (+ on wheel 1) and ``dP/ds = T``.
     """
     phi1, one, two, lead = positions
-    first, second = (
-        toothing.frames(angle) for toothing, angle in zip(pairs.toothings, (one, two), strict=True)
-    )
-    guide, alpha = pairs.guide, pairs.toothings[0].cutter.alpha
+    driver, driven = (wheel.toothing for wheel in pairs.wheels)
+    first, second = driver.frames(one), driven.frames(two)
+    guide, alpha = pairs.guide, driver.cutter.alpha
     cosine, turned = math.cos(alpha), np.exp(-1j * phi1)
-    n1, n2 = (
-        toothing.normals(frames, pairs.sigma(toothing.wheel))
-        for toothing, frames in zip(pairs.toothings, (first, second), strict=True)
-    )
     nominal, ratio = guide.motion(phi1) if motion is None else motion
     stand = guide.pose(nominal + lead)
     back = stand.rotation
-    one_at, two_at = pairs.eccentric
-    foot1, n1 = (first.p + one_at) * turned, n1 * turned
-    foot2, n2, tangent2 = (second.p + two_at) * back + stand.shift, n2 * back, second.t * back
+    eccentric1, eccentric2 = (wheel.eccentric for wheel in pairs.wheels)
+    n1 = driver.normals(first, pairs.side) * turned
+    n2 = driven.normals(second, -pairs.side) * back
+    foot1 = (first.p + eccentric1) * turned
+    foot2, tangent2 = (second.p + eccentric2) * back + stand.shift, second.t * back
     carried, turns = guide.carried(foot2), guide.turns
     foot2 = foot2 + pairs.distance
     across = np.conj(n1) * (foot2 - foot1)

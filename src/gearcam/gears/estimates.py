@@ -76,17 +76,17 @@ def pair_errors(subject: CheckedPair) -> tuple[float, float, float]:
 
     def compute(perturb: Perturb) -> list[Array | Plane]:
         rolling = _perturbed(pair.rolling, perturb)
-        found: list[Array | Plane] = [rolling.law.driven(perturb(phi, EPS * law.period))]
+        results: list[Array | Plane] = [rolling.law.driven(perturb(phi, EPS * law.period))]
         for gear, track in zip(subject.gears, rolling.tracks, strict=True):
             tips, toothing = gear.profile.flanks.tips, replace(gear.toothing, track=track)
             places = np.concatenate([phi, tips.phi, tips.foot])
             frames = toothing.frames(perturb(places, EPS * track.around))
             at, first = len(phi), len(phi) + len(tips.phi)
             s = gear.toothing.track.arc_length(phi)
-            found.append(_points(toothing, frames.some(slice(at)), s))
+            results.append(_points(toothing, frames.some(slice(at)), s))
             ends = frames.some(slice(at, first)), frames.some(slice(first, None))
-            found.append(_reaches(toothing, gear.profile.flanks, *ends))
-        return found
+            results.append(_reaches(toothing, gear.profile.flanks, *ends))
+        return results
 
     driven, *of_wheels = (float(change.max()) for change in largest_changes(compute))
     return driven, max(of_wheels[::2]), sum(of_wheels[1::2]) / pair.toothings[0].pitch

@@ -76,8 +76,8 @@ def round_tips(toothing: Toothing, rows: Rows, tips: TipEnds) -> tuple[Rows, Arr
         If the radius is too large; with the largest.
     """
     tops = _tops(toothing, rows, tips)
-    found = _arcs(toothing, rows, tips, tops, toothing.rounding)
-    if found is None:
+    rounded = _arcs(toothing, rows, tips, tops, toothing.rounding)
+    if rounded is None:
         largest = largest_fitting(
             lambda radius: _arcs(toothing, rows, tips, tops, radius) is not None,
             toothing.rounding,
@@ -89,7 +89,7 @@ def round_tips(toothing: Toothing, rows: Rows, tips: TipEnds) -> tuple[Rows, Arr
         raise beyond_limit(
             what, f"wheel {toothing.wheel}, blank.tip_rounding_mm", toothing.rounding, largest, note
         )
-    return found
+    return rounded
 
 
 def _tops(toothing: Toothing, rows: Rows, tips: TipEnds) -> _Tops:

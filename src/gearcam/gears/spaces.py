@@ -15,7 +15,7 @@ import numpy as np
 
 from gearcam.gears.flank import Curve, Rows, Toothing, WheelCurves
 from gearcam.gears.flank_ends import ROUGH, TipEnds, Undercut, near
-from gearcam.numeric.arrays import Array, Ints
+from gearcam.numeric.arrays import Array, Ints, in_groups
 from gearcam.numeric.crossings import (
     Branch,
     Chain,
@@ -193,7 +193,7 @@ def _about_jumps(curves: WheelCurves, curve: Ints) -> Array:
         np.minimum(start, end), np.maximum(start, end), toothing.pitch
     )
     count = np.bincount(number, minlength=start.size)
-    order = np.arange(number.size) - np.repeat(np.cumsum(count) - count, count)
+    _, order = in_groups(count)
     about = np.zeros((start.size, int(count.max()), 2 * _ABOUT + 1))
     away = np.arange(-_ABOUT, _ABOUT + 1) / _ABOUT
     share = ((place - start[number]) / (end - start)[number])[:, None] + _WIDE * away**3

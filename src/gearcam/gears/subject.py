@@ -116,12 +116,12 @@ class CheckedPair(ShortRepr):
     @property
     def contact_ratio(self) -> float:
         """Smallest contact ratio of any flank, on both sides."""
-        return min(float(pairs.contact_ratios.min()) for pairs in self.sides)
+        return min(float(pairs.arcs.ratios.min()) for pairs in self.sides)
 
     @property
     def driven(self) -> bool:
         """Whether flanks touch in every phase, on both sides."""
-        return all(bool(pairs.stretches[2].all()) for pairs in self.sides)
+        return all(bool(pairs.arcs.stretches[2].all()) for pairs in self.sides)
 
     @cached_property
     def tip_pass(self) -> TipPass | None:

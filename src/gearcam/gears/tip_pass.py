@@ -224,7 +224,7 @@ def find_stays(
     SpaceIntervals
         By corner, then in order.
     """
-    found: list[tuple[int, int, int]] = []
+    stays: list[tuple[int, int, int]] = []
     size = max(1, _BLOCK // count)
     for block in range(0, len(points), size):
         some = slice(block, block + size)
@@ -239,6 +239,6 @@ def find_stays(
             ends += [min(high + 1, count - 1)] if high < count else []
             ends = ends or [low + int(inside.argmin())]
             deep = low + int(inside.argmax())
-            found += [(block + corner, deep, end) for end in ends]
-    corner, deep, end = np.array(found, dtype=int).reshape(-1, 3).T
+            stays += [(block + corner, deep, end) for end in ends]
+    corner, deep, end = np.array(stays, dtype=int).reshape(-1, 3).T
     return SpaceIntervals(corner, rolls.phi[first[corner] + deep], rolls.phi[first[corner] + end])

@@ -16,8 +16,8 @@ from gearcam.kinds.shared import turn_in_steps
 from gearcam.numeric.arguments import angles
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
+from gearcam.numeric.mesh import Mesh
 from gearcam.numeric.pose import SpacePose
-from gearcam.parts.solids import Mesh
 from gearcam.results.result import Result
 
 if TYPE_CHECKING:
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
     from trimesh import Trimesh
 
-    from gearcam.spatial.surface import Surface
 
 STEM: Final = "cam"
 """Stem of the files of the solid."""
@@ -168,7 +167,7 @@ class GriddedCam(Result):
         """
         limits = self.design.limits
         with self.stage("checks"):
-            found = [*run_checks(kind, subject, limits), *self.row_findings]
+            found = [*run_checks(kind, subject, limits), *self.rows.findings]
             if self.solid_asked and self.carved:
                 found += run_checks(solid, (self.solid_steps, self.chord_error), limits)
             return in_order(found)
@@ -280,8 +279,3 @@ class GriddedCam(Result):
             ("walls of the solid, between its points", ["chord_mm"]),
             ("volume", ["volume_mm3"]),
         )
-
-
-def mesh_from(made: Surface) -> Mesh:
-    """Return the mesh of a surface that was `made`."""
-    return Mesh(vertices=made.vertices, triangles=made.triangles)

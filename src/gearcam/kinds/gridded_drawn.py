@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -18,14 +19,15 @@ from gearcam.pictures.scenes import MovingBody, Scene
 if TYPE_CHECKING:
     from gearcam.kinds.gridded import GriddedCam
     from gearcam.numeric.arrays import Array, Plane
-    from gearcam.pictures.charts import MarkedPlace
 
 DRIVER: Final = "cam angle theta, deg"
 """Label of the axis of cam angles."""
 
 
-def _knots(result: GriddedCam) -> tuple[MarkedPlace, ...]:
-    return knot_marks(np.degrees(np.asarray(result.program.knots)), 0.0, 360.0)
+def _over_turn(result: GriddedCam) -> Callable[..., Chart]:
+    """Return what makes charts over the cam angle, with marks at knots of the motion."""
+    knots = knot_marks(np.degrees(np.asarray(result.program.knots)), 0.0, 360.0)
+    return partial(Chart, x=DRIVER, marks=knots)
 
 
 def motion_chart(result: GriddedCam, name: str, title: str, called: str = "") -> Chart:
@@ -45,12 +47,10 @@ def motion_chart(result: GriddedCam, name: str, title: str, called: str = "") ->
     table = result.motion()
     column = next(one for one in table if one.startswith(name))
     unit = column.removeprefix(f"{name}_").replace("_per_", "/")
-    return Chart(
+    return _over_turn(result)(
         title=title,
-        x=DRIVER,
         y=f"{called or name}, {unit}",
         lines=(Line(label=name, x=table["theta_deg"], y=table[column]),),
-        marks=_knots(result),
     )
 
 
@@ -71,16 +71,14 @@ def pressure_chart(
         The largest that is allowed.
     """
     table = result.motion()
-    return Chart(
+    return _over_turn(result)(
         title=title,
-        x=DRIVER,
         y="pressure angle, deg",
         lines=tuple(
             Line(label=label, x=table["theta_deg"], y=table[f"pressure_angle_{word}_deg"])
             for word, label in labels.items()
         ),
         limits=(Limit(label="limit", value=math.degrees(limit)),),
-        marks=_knots(result),
     )
 
 
@@ -102,13 +100,11 @@ def spread_chart(result: GriddedCam, title: str, places: Mapping[str, float]) ->
         for label, x in places.items():
             spread = wall.contact(theta, np.full((len(theta), 1), x)).spread[:, 0]
             lines.append(Line(label=f"{wall.key} wall, {label}", x=np.degrees(theta), y=spread))
-    return Chart(
+    return _over_turn(result)(
         title=title,
-        x=DRIVER,
         y="spread, mm",
         lines=tuple(lines),
         limits=(Limit(label="undercut", value=0.0),),
-        marks=_knots(result),
     )
 
 

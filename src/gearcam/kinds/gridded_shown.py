@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.base.facts import Fact
+from gearcam.base.facts import Fact, Tree
 from gearcam.designs.outputs import MESHES
 from gearcam.kinds.gridded import ORDERS
 from gearcam.kinds.shared import peak_of
@@ -18,11 +18,9 @@ if TYPE_CHECKING:
     from gearcam.kinds.gridded import GriddedCam
     from gearcam.numeric.arrays import Array, Mask
     from gearcam.pictures.drawings import Drawing
-    from gearcam.results.kind import FileMaker
+    from gearcam.results.kind import FileMaker, Files
     from gearcam.spatial.envelope import RollerContact
     from gearcam.spatial.walls import RollerCam, RollerWall
-
-Tree = dict[str, Any]
 
 
 def peak_facts(result: GriddedCam, scale: float, unit: str, whose: str = "") -> Tree:
@@ -106,8 +104,6 @@ def accuracy_facts(
     values = {name: value for name, (value, _) in errors.items()}
     return values | {"how": {name: how for name, (_, how) in errors.items()}}
 
-
-Files = dict[str, bytes]
 
 GridPart = tuple["RollerWall", dict[str, "Array"], "RollerContact", "Mask"]
 """A wall, columns of its n cam angles, its grid of (n, k) points, and which of these count."""

@@ -15,13 +15,14 @@ from gearcam.base.errors import ABOVE, beyond_limit
 from gearcam.base.quantities import ANGLE, COUNT, TEXT, fixed, param
 from gearcam.base.rules import Breach, distinct
 from gearcam.designs.outputs import OutputSpec, pose_param
+from gearcam.results.kind import Study
 
 if TYPE_CHECKING:
     from gearcam.designs.design import Design
     from gearcam.laws.program import Program
     from gearcam.numeric.arrays import Array
-    from gearcam.results.kind import Study
-    from gearcam.results.result import Progress, Result, StudyResult
+    from gearcam.results.result import Result
+    from gearcam.results.study import Progress, StudyResult
 
 TABLE: Final = "accuracy.csv"
 PAGE: Final = "accuracy.html"
@@ -187,32 +188,16 @@ def solved_file(design: Design) -> dict[str, bytes]:
 
 
 @cache
-def accuracy_study() -> Study:
-    """Return the study of error against run time (see `gearcam.results.accuracy`)."""
-    from gearcam.results.kind import Study
-
-    return Study(
-        name="accuracy",
-        key="convergence",
-        doc="Measure accuracy against run time; write DIR/NAME/accuracy.csv and accuracy.html.",
-        done="measured",
-        table="accuracy",
-        compute=_measure,
-        demand=_demand,
-        many=False,
-    )
-
-
 def _demand(design: Design) -> None:
     from gearcam.results.accuracy import stages_of
 
     stages_of(design, design.accuracy.stage)  # pyright: ignore[reportAttributeAccessIssue]
 
 
-def _measure(result: Result, progress: Progress | None) -> StudyResult:
+def _measure(result: Result, progress: Progress) -> StudyResult:
     from gearcam.report.page import charts_page
     from gearcam.results.accuracy import accuracy
-    from gearcam.results.result import StudyResult
+    from gearcam.results.study import StudyResult
 
     settings: AccuracySpec = result.design.accuracy
     outcome = accuracy(result, settings.stage, settings.repeat, progress)
@@ -220,7 +205,7 @@ def _measure(result: Result, progress: Progress | None) -> StudyResult:
     title = f"{result.design.name}, error against run time"
     return StudyResult(
         result=result,
-        study=accuracy_study(),
+        study=result.kind.studies["accuracy"],
         file=TABLE,
         table=outcome.columns,
         group=outcome.facts,
@@ -228,6 +213,19 @@ def _measure(result: Result, progress: Progress | None) -> StudyResult:
         pages={PAGE: charts_page(title, outcome.charts, "\n".join(lines))},
         lines=lines,
     )
+
+
+ACCURACY: Final = Study(
+    name="accuracy",
+    key="convergence",
+    doc="Measure accuracy against run time; write DIR/NAME/accuracy.csv and accuracy.html.",
+    done="measured",
+    table="accuracy",
+    compute=_measure,
+    demand=_demand,
+    many=False,
+)
+"""The study of error against run time (see `gearcam.results.accuracy`)."""
 
 
 @dataclass(frozen=True, kw_only=True)

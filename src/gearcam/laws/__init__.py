@@ -1,6 +1,6 @@
 """Laws of the transmission ratio, motion laws and lift programs.
 
-The registries `gearcam.laws.ratio.base.LAWS` and `gearcam.laws.motion.base.MOTION_LAWS` load a law
+The registries `gearcam.laws.ratio.LAWS` and `gearcam.laws.motion.MOTION_LAWS` load a law
 when it is used. Depends on numpy only.
 
 The parameters of ratio laws are attributes: ``gearcam.laws.Ellipse(eccentricity=0.3)``.
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def _classes() -> dict[str, type]:
-    from gearcam.laws.ratio.base import LAWS
+    from gearcam.laws.ratio import LAWS
 
     return classes_in(LAWS)
 

@@ -6,8 +6,9 @@ the first is the true one, where d is what the second misses of it, with the dev
 ``2*d*sqrt(v)``. The true law then loses by ``S_a - S_b > T`` with a chance that is largest for
 ``d^2 = T``: that of ``sqrt(T/v)`` standard deviations. So laws whose sums differ by less than
 ``16*v``, four deviations, *cannot be distinguished*. Of these one without a number to choose is
-taken, one without a dwell by the same rule, and one that misses more by less than ``2*v`` for each
-law that it has in more than one move.
+taken, one without a dwell by the same rule, and of such the one with the *shortest description*:
+the sum of squares over v is twice the length of the errors in natural units, to within a constant,
+and the name of one of n laws has the length ``ln(n)``. A law is named once, for all its moves.
 
 The variance is that of what the best model misses, or of the noise in the rows if that is larger,
 times the number of neighbouring rows whose errors are alike (the sum of the autocorrelation). An
@@ -17,7 +18,8 @@ the turn.
 Sizes are rounded one after the other to the roundest number within two standard deviations, as long
 as the sum of squares grows by less than ``9*v`` when the others have adapted themselves.
 
-Source: derived anew; least squares as in `gearcam.laws.lift_model`.
+Source: Rissanen, Modeling by shortest data description, Automatica 14 (1978), for the choice among
+laws; the rest derived anew; least squares as in `gearcam.laws.lift_model`.
 """
 
 from __future__ import annotations
@@ -35,7 +37,7 @@ from gearcam.base.errors import beyond_limit
 from gearcam.base.numerals import formatted
 from gearcam.laws.lift_model import SPAN, LiftModel, Name, crossed, improved, number_of
 from gearcam.laws.lift_rows import LAG, LiftRows, noise_of, runs_of
-from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.laws.motion import MOTION_LAWS
 from gearcam.laws.phases_of_lift import TURN, DwellPhase, Phase, ReturnPhase, RisePhase
 from gearcam.numeric.arrays import Array, Ints, Mask
 
@@ -56,9 +58,6 @@ _APART: Final = 16.0
 
 _ROUNDED: Final = 9.0
 """Largest growth of the sum of squares by rounding a size, in variances."""
-
-_SIMPLER: Final = 2.0
-"""What a law that no other move has must take off the sum of squares, in variances."""
 
 _NEAR: Final = 2.0
 """Standard deviations within which sizes are rounded, and which their errors are."""
@@ -164,15 +163,15 @@ class FittedLift:
         widths, dwells = model.gaps
         dwells = dwells.copy()
         dwells[first - 1] -= before
-        found: list[Phase] = list(_dwell(before))
+        phases: list[Phase] = list(_dwell(before))
         for k in (*range(first, count), *range(first)):
             rise = self.scale * float(model.after[k] - model.levels[k])
             last = (k + 1) % count == first
             make = ReturnPhase if rise < 0.0 else RisePhase
             lift = None if last else float(f"{abs(rise):.12g}") / self.scale
-            found.append(make(angle=_angle(widths[k]), law=model.laws[k], lift=lift))
-            found += _dwell(float(dwells[k]))
-        return (*found[:-1], replace(found[-1], angle="rest"))
+            phases.append(make(angle=_angle(widths[k]), law=model.laws[k], lift=lift))
+            phases += _dwell(float(dwells[k]))
+        return (*phases[:-1], replace(phases[-1], angle="rest"))
 
 
 def _dwell(width: float) -> Iterator[Phase]:
@@ -334,18 +333,21 @@ def _demand_rows(rows: LiftRows, run: Ints, done: Array) -> None:
 Choice = tuple[Any, bool]
 """A motion law, and whether its number is fitted."""
 
+Laws = tuple[Choice, ...]
+"""Those of all moves."""
+
 
 @cache
 def _choices() -> tuple[Choice, ...]:
     """Return the laws without numbers to choose, and those with one: at its default, then free."""
-    found = []
+    choices = []
     for entry in MOTION_LAWS.values():
         law, known = entry.parameters, fields(entry.parameters)
         if not known:
-            found.append((law(), False))
+            choices.append((law(), False))
         elif len(known) == 1 and isinstance(known[0].default, float):
-            found += [(law(), False), (law(), True)]
-    return tuple(found)
+            choices += [(law(), False), (law(), True)]
+    return tuple(choices)
 
 
 @dataclass(frozen=True, eq=False)
@@ -357,10 +359,10 @@ class _Trials:
 
     start: LiftModel
     rows: LiftRows
-    models: dict[tuple[Choice, ...], LiftModel] = field(default_factory=dict)
-    squares: dict[tuple[Choice, ...], float] = field(default_factory=dict)
+    models: dict[Laws, LiftModel] = field(default_factory=dict)
+    squares: dict[Laws, float] = field(default_factory=dict)
 
-    def cost(self, choices: tuple[Choice, ...]) -> float:
+    def cost(self, choices: Laws) -> float:
         """Return the sum of squares that laws leave, and more for each number that is chosen."""
         if choices not in self.models:
             model = self.start
@@ -381,76 +383,75 @@ class _Trials:
         """
         plain = [one for one in _choices() if not one[1]]
         count = len(self.start.laws)
-        found = self.swept(min(((one,) * count for one in plain), key=self.cost), plain)
-        for k, tied in enumerate(self.models[found].tied):
+        laws = self.swept(min(((one,) * count for one in plain), key=self.cost), plain)
+        for k, tied in enumerate(self.models[laws].tied):
             if tied:
-                found = min(self.in_pairs(found, k, plain), key=self.cost)
-        return self.models[self.swept(found, _choices())]
+                laws = min(self.in_pairs(laws, k, plain), key=self.cost)
+        return self.models[self.swept(laws, _choices())]
 
-    def swept(self, found: tuple[Choice, ...], choices: Iterable[Choice]) -> tuple[Choice, ...]:
+    def swept(self, laws: Laws, choices: Iterable[Choice]) -> Laws:
         """Return the best laws, tried move by move."""
         for _ in range(_SWEEPS):
-            before = found
-            for k in range(len(found)):
-                found = min((_changed(found, {k: one}) for one in choices), key=self.cost)
-            if found == before:
+            before = laws
+            for k in range(len(laws)):
+                laws = min((_changed(laws, {k: one}) for one in choices), key=self.cost)
+            if laws == before:
                 break
-        return found
+        return laws
 
-    def in_pairs(
-        self, found: tuple[Choice, ...], k: int, choices: Iterable[Choice]
-    ) -> Iterator[tuple[Choice, ...]]:
+    def in_pairs(self, laws: Laws, k: int, choices: Iterable[Choice]) -> Iterator[Laws]:
         """Yield the laws with those that suit a move and the next best, in all pairs."""
-        pair = (k, (k + 1) % len(found))
-        part, rows = _alone(self.models[found], k, 2, self.rows)
+        following = (k + 1) % len(laws)
+        part, rows = _pair_alone(self.models[laws], k, self.rows)
 
-        def squares(laws: tuple[Choice, ...]) -> float:
-            one = part.with_law(0, laws[0][0]).with_law(1, laws[1][0])
-            return improved(one, rows, _ROUGH).squares(rows)
+        def squares(pair: Laws) -> float:
+            model = part.with_law(0, pair[0][0]).with_law(1, pair[1][0])
+            return improved(model, rows, _ROUGH).squares(rows)
 
-        for laws in sorted(product(choices, repeat=2), key=squares)[:_PAIRED]:
-            yield _changed(found, dict(zip(pair, laws, strict=True)))
+        for first, second in sorted(product(choices, repeat=2), key=squares)[:_PAIRED]:
+            yield _changed(laws, {k: first, following: second})
 
     def near(self, squares: float, variance: float) -> list[LiftModel]:
         """Return the models that cannot be distinguished from one, the simplest and best first."""
         most = squares + _APART * variance
-        good = [one for one, squares in self.squares.items() if squares <= most]
+        good = [laws for laws, missed in self.squares.items() if missed <= most]
+        name = 2.0 * math.log(len(_choices()))
 
-        def order(laws: tuple[Choice, ...]) -> tuple[int, float]:
+        def order(laws: Laws) -> tuple[int, float]:
             model = self.models[laws]
-            more = _APART * len(model.parameters) + _SIMPLER * len(set(laws))
+            more = _APART * len(model.parameters) + name * len(set(laws))
             return len(model.free), self.squares[laws] + more * variance
 
-        return [self.models[one] for one in sorted(good, key=order)]
+        return [self.models[laws] for laws in sorted(good, key=order)]
 
 
-def _alone(model: LiftModel, k: int, count: int, rows: LiftRows) -> tuple[LiftModel, LiftRows]:
-    """Return a move and those after it as a model of their own, and their rows.
+def _pair_alone(model: LiftModel, k: int, rows: LiftRows) -> tuple[LiftModel, LiftRows]:
+    """Return a move and the next as a model of their own, and their rows.
 
     Where another move touches some rows are left out. A move where there are no rows closes the
     ring.
     """
-    numbers = [(k + one) % len(model.laws) for one in range(count)]
-    last, after = numbers[-1], (numbers[-1] + 1) % len(model.laws)
+    count = len(model.laws)
+    last, after = (k + 1) % count, (k + 2) % count
     widths, dwells = model.gaps
-    starts = model.starts[k] + (model.starts[numbers] - model.starts[k]) % TURN
-    ends = starts + widths[numbers]
+    starts = model.starts[k] + np.array([0.0, (model.starts[last] - model.starts[k]) % TURN])
+    ends = starts + widths[[k, last]]
     low = starts[0] - _BESIDE * dwells[k - 1] + _INSET * widths[k] * model.tied[k - 1]
     high = ends[-1] + _BESIDE * dwells[last] - _INSET * widths[last] * model.tied[last]
     inside = (rows.theta - low) % TURN <= high - low
     third = (TURN - (high - low)) / 3.0
     alone = LiftModel(
-        laws=(*(model.laws[one] for one in numbers), model.laws[k]),
+        laws=(model.laws[k], model.laws[last], model.laws[k]),
         starts=np.append(starts, high + third),
         ends=np.append(ends, high + 2.0 * third),
-        levels=model.levels[[*numbers, after]],
-        tied=(*(model.tied[one] for one in numbers[:-1]), False, False),
-        fixed=frozenset({("start", count), ("end", count)}),
+        levels=model.levels[[k, last, after]],
+        tied=(model.tied[k], False, False),
+        fixed=frozenset({("start", 2), ("end", 2)}),
     )
     return alone, replace(rows, theta=rows.theta[inside], lift=rows.lift[inside])
 
 
-def _changed(laws: tuple[Choice, ...], new: dict[int, Choice]) -> tuple[Choice, ...]:
+def _changed(laws: Laws, new: dict[int, Choice]) -> Laws:
     return tuple(new.get(k, one) for k, one in enumerate(laws))
 
 

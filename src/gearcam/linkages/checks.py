@@ -88,20 +88,20 @@ def pressure_angle(machine: CheckedMachine, limit: float) -> Iterator[Remark]:
     Looks at: the largest pressure angle over the whole range, 90 degrees less the transmission
     angle. Source of the limits: 000, 2.2.
     """
-    for one in machine.transmissions:
-        safe = ADMISSIBLE.get(one.dyad.type)
-        if one.pressure_angle is None or safe is None:
+    for transmission in machine.transmissions:
+        safe = ADMISSIBLE.get(transmission.dyad.type)
+        if transmission.pressure_angle is None or safe is None:
             continue
         most = safe.pressure_angle[0] if math.isnan(limit) else limit
-        worst, found = one.pressure_angle, math.degrees(one.pressure_angle.value)
+        worst, angle = transmission.pressure_angle, math.degrees(transmission.pressure_angle.value)
         if worst.value > most:
             usual, least = (90.0 - math.degrees(limit) for limit in safe.pressure_angle)
             yield Remark(
-                f"The pressure angle of {one.dyad.joint} reaches {formatted(found, 4)} deg: the "
-                f"transmission angle falls to {formatted(90.0 - found, 4)} deg. Usual are "
-                f"{formatted(usual)} deg and more, and never less than {formatted(least)} deg.",
-                f"{one.dyad.joint}, {_at(worst.place)}",
-                found,
+                f"The pressure angle of {transmission.dyad.joint} reaches {formatted(angle, 4)} "
+                f"deg: the transmission angle falls to {formatted(90.0 - angle, 4)} deg. Usual "
+                f"are {formatted(usual)} deg and more, and never less than {formatted(least)} deg.",
+                f"{transmission.dyad.joint}, {_at(worst.place)}",
+                angle,
                 limit=math.degrees(most),
                 unit="deg",
             )
@@ -115,17 +115,18 @@ def guide_distance(machine: CheckedMachine, limit: float) -> Iterator[Remark]:  
     guide turns fast there. Source of the limit: 000, 2.2.
     """
     cranks = {one.joint: one for one in machine.linkage.elements if isinstance(one, Crank)}
-    for one in machine.transmissions:
-        crank = cranks.get(one.dyad.first) or cranks.get(one.dyad.second)
-        if one.distance is None or crank is None:
+    for transmission in machine.transmissions:
+        crank = cranks.get(transmission.dyad.first) or cranks.get(transmission.dyad.second)
+        if transmission.distance is None or crank is None:
             continue
-        least = ADMISSIBLE[one.dyad.type].distance[0] * crank.length
-        if one.distance.value < least:
+        least = ADMISSIBLE[transmission.dyad.type].distance[0] * crank.length
+        if transmission.distance.value < least:
             yield Remark(
-                f"The block of {one.dyad.joint} comes within {formatted(one.distance.value, 4)} mm "
-                "of the guide's pivot, where the guide turns fast.",
-                f"{one.dyad.joint}, {_at(one.distance.place)}",
-                one.distance.value,
+                f"The block of {transmission.dyad.joint} comes within "
+                f"{formatted(transmission.distance.value, 4)} mm of the guide's pivot, where the "
+                "guide turns fast.",
+                f"{transmission.dyad.joint}, {_at(transmission.distance.place)}",
+                transmission.distance.value,
                 limit=least,
                 unit="mm",
             )

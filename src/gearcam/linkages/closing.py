@@ -138,19 +138,19 @@ def settled(linkage: Linkage) -> Linkage:
         If a part does not close over the whole range, or is singular where it cannot be passed.
     """
     for number, element in enumerate(linkage.elements):
-        found = closing(linkage, element)
-        if found is None:
+        outcome = closing(linkage, element)
+        if outcome is None:
             continue
-        stuck = bool(found.changes) and _stuck(found)
-        if isinstance(element, Dyad) and found.least >= 0.0 and found.unresolved:
-            raise NotClosingError(found, (), _resolved(linkage, element, found.unresolved))
-        if not found.least >= 0.0 or stuck:
-            nearest = _nearest(element, found.leasts) if isinstance(element, Dyad) else []
-            raise NotClosingError(found, tuple(nearest))
-        knots = with_narrow_places(found.narrow, linkage.knots, closed=linkage.closed)
+        stuck = bool(outcome.changes) and _stuck(outcome)
+        if isinstance(element, Dyad) and outcome.least >= 0.0 and outcome.unresolved:
+            raise NotClosingError(outcome, (), _resolved(linkage, element, outcome.unresolved))
+        if not outcome.least >= 0.0 or stuck:
+            nearest = _nearest(element, outcome.leasts) if isinstance(element, Dyad) else []
+            raise NotClosingError(outcome, tuple(nearest))
+        knots = with_narrow_places(outcome.narrow, linkage.knots, closed=linkage.closed)
         linkage = replace(linkage, knots=knots)
-        if found.changes and isinstance(element, Dyad):
-            linkage = _passing(linkage, number, element, found.changes)
+        if outcome.changes and isinstance(element, Dyad):
+            linkage = _passing(linkage, number, element, outcome.changes)
     return linkage
 
 
@@ -330,14 +330,14 @@ def _nearest_rods(own: Array, least: float, most: float) -> list[dict[int, float
     """Return lengths with which two rods reach all distances of their ends, nearest first."""
     if least <= _MET * most:  # only rods of one length reach it, and lose their place there
         return []
-    found: list[dict[int, float]] = []
+    changes: list[dict[int, float]] = []
     for number in (0, 1):
         other = own[1 - number]
         low, high = max(most - other, other - least) * (1.0 + _SPARE), other + least
         if low < high * (1.0 - _SPARE):
-            found.append({number: min(max(own[number], low), high * (1.0 - _SPARE))})
-    if not found:  # both: as long as the distance asks for, with the difference they have
+            changes.append({number: min(max(own[number], low), high * (1.0 - _SPARE))})
+    if not changes:  # both: as long as the distance asks for, with the difference they have
         half = 0.5 * most * (1.0 + _SPARE)
         skew = np.clip(0.5 * (own[0] - own[1]), *(0.5 * least * (1.0 - _SPARE) * np.array([-1, 1])))
-        found.append({0: float(half + skew), 1: float(half - skew)})
-    return sorted(found, key=lambda one: max(abs(v - own[k]) for k, v in one.items()))
+        changes.append({0: float(half + skew), 1: float(half - skew)})
+    return sorted(changes, key=lambda one: max(abs(v - own[k]) for k, v in one.items()))

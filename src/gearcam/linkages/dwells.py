@@ -160,18 +160,18 @@ def last_travels(
     level = top.value - travel if outer else top.value + travel
     band = (level, np.inf) if outer else (-np.inf, level)
     there = np.abs(values - top.value) <= _TOUCHING * measures.stroke
-    nodes, found = [node for node in _own(measures) if there[node]], dict[float, DriverRange]()
+    nodes, ranges = [node for node in _own(measures) if there[node]], dict[float, DriverRange]()
     for node in nodes:
         begin = _leaves(measures, node, -1, band)
         if begin == places[0] and abs(values[0] - level) > (WHOLE - 1.0) * measures.stroke:
             continue
         one = _in_turn(measures, begin, float(places[node]))
         # where it rests, and at both ends of a turn, it has arrived before
-        known = found.setdefault(round(one.begin, _DIGITS), one)
-        found[round(one.begin, _DIGITS)] = min(known, one, key=lambda two: two.end)
-    if not found:
+        known = ranges.setdefault(round(one.begin, _DIGITS), one)
+        ranges[round(one.begin, _DIGITS)] = min(known, one, key=lambda two: two.end)
+    if not ranges:
         raise ShortRangeError(travel, float(np.abs(values[: nodes[-1] + 1] - top.value).max()))
-    return tuple(found.values())
+    return tuple(ranges.values())
 
 
 def _in_turn(measures: TrackMeasures, begin: float, end: float) -> DriverRange:

@@ -99,7 +99,8 @@ def grashof(lengths: FourBarLengths) -> GrashofClass:
         If a length is not above 0, or the longest one is not shorter than the others together.
     """
     _check(lengths)
-    spare = _spare(lengths)
+    least, *middle, most = sorted(lengths)
+    spare = math.fsum([*middle, -least, -most])
     shortest = min(lengths._fields, key=lambda name: getattr(lengths, name))
     if abs(spare) <= _EQUAL * sum(lengths):
         ways = {
@@ -131,11 +132,6 @@ def turns_fully(lengths: FourBarLengths) -> bool:
     least, most = abs(lengths.driver - lengths.base), lengths.driver + lengths.base
     reach = lengths.coupler + lengths.follower
     return least >= abs(lengths.coupler - lengths.follower) - loose and most <= reach + loose
-
-
-def _spare(lengths: FourBarLengths) -> float:
-    least, *middle, most = sorted(lengths)
-    return math.fsum([*middle, -least, -most])
 
 
 def _check(lengths: FourBarLengths) -> None:

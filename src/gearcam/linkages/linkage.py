@@ -57,7 +57,7 @@ def in_order(elements: Iterable[Element]) -> tuple[Element, ...]:
     UnreachedError
         If some need what nothing gives.
     """
-    known, left, found = {GROUND}, list(elements), []
+    known, left, ordered = {GROUND}, list(elements), []
     while left:
         ready = [one for one in left if known.issuperset(one.needs)]
         if not ready:
@@ -65,10 +65,10 @@ def in_order(elements: Iterable[Element]) -> tuple[Element, ...]:
                 one.gives[0]: tuple(name for name in one.needs if name not in known) for one in left
             }
             raise UnreachedError(missing)
-        found += ready
+        ordered += ready
         known.update(name for one in ready for name in one.gives)
         left = [one for one in left if one not in ready]
-    return tuple(found)
+    return tuple(ordered)
 
 
 @dataclass(frozen=True, eq=False)

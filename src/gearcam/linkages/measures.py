@@ -342,7 +342,7 @@ class TrackMeasures(ShortRepr):
         rests = _rests(*self.nodes)
         low, high = self.span
         near = _NEAR * (high - low)
-        found = []
+        centers = []
         for before, own, after in zip([None, *rests], rests, [*rests[1:], None], strict=False):
             into = own.value - before.value if before else self._resting(0, after, own)
             out = after.value - own.value if after else self._resting(-1, own, before)
@@ -350,8 +350,8 @@ class TrackMeasures(ShortRepr):
                 -1 if self.closed else 1
             ):
                 place = low if abs(own.begin - low) <= near else own.begin
-                found.append(DeadCenter(own.value, place, max(own.end, place), into > 0.0))
-        return tuple(found)
+                centers.append(DeadCenter(own.value, place, max(own.end, place), into > 0.0))
+        return tuple(centers)
 
     def _resting(self, end: int, later: _Rest | None, earlier: _Rest | None) -> float:
         """Return how an open range would go on beyond an end: back, if it stands still there."""

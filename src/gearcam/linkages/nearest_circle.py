@@ -167,14 +167,14 @@ def _leveled(rows: Array, values: Array) -> Array:
     (3,) array
     """
     four = np.linspace(0, values.size - 1, 4).round().astype(int)
-    found = np.zeros(4)
+    solution = np.zeros(4)
     for _ in range(_EXCHANGES):
         weights = np.linalg.svd(rows[four].T)[2][-1]  # times the rows they make 0
         signs = np.where(weights * (weights @ values[four]) >= 0.0, 1.0, -1.0)
-        found = np.linalg.lstsq(np.c_[rows[four], signs], values[four], rcond=None)[0]
-        off = values - rows @ found[:3]
+        solution = np.linalg.lstsq(np.c_[rows[four], signs], values[four], rcond=None)[0]
+        off = values - rows @ solution[:3]
         worst = int(np.abs(off).argmax())
-        if abs(off[worst]) <= abs(found[3]) + _EVEN * values.max() or worst in four:
+        if abs(off[worst]) <= abs(solution[3]) + _EVEN * values.max() or worst in four:
             break
         # the one that leaves weights above 0 with the new point among the four
         known = np.r_[(rows[four] * signs[:, None]).T, np.ones((1, 4))]
@@ -183,4 +183,4 @@ def _leveled(rows: Array, values: Array) -> Array:
         with np.errstate(divide="ignore", invalid="ignore"):
             left = np.where(shares > _EVEN, np.abs(weights) / shares, np.inf)
         four[left.argmin()] = worst
-    return found[:3]
+    return solution[:3]

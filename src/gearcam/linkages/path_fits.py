@@ -178,12 +178,9 @@ def best_circle(path: PointPath, begin: float, end: float) -> CircleFit:
             break
     _, center = best
     low, high = least_and_largest(_distances(path, knots, center))
-    return CircleFit(
-        center,
-        0.5 * (low.value + high.value),
-        0.5 * (high.value - low.value),
-        _turned(points - center),
-    )
+    spokes = points - center
+    turned = float(np.angle(spokes[1:] / spokes[:-1]).sum())
+    return CircleFit(center, 0.5 * (low.value + high.value), 0.5 * (high.value - low.value), turned)
 
 
 def distances_from(path: PointPath, center: complex, begin: float, end: float) -> tuple[Peak, Peak]:
@@ -244,8 +241,3 @@ def _distances(path: PointPath, knots: Array, center: complex) -> Extremes:
     """Return extremes of the distance from a point."""
     places, _ = _extremes(path, knots, lambda point: square(point - center))
     return places, np.abs(np.asarray(path.at(places, 0).c[0]) - center)
-
-
-def _turned(away: Plane) -> float:
-    """Return the angle by which a direction turns from the first to the last one."""
-    return float(np.angle(away[1:] / away[:-1]).sum())

@@ -196,7 +196,8 @@ class PointPath(ShortRepr):
 
         Places where it touches itself in one direction, or is gone twice, are left out.
         """
-        q = self._grid()
+        q = np.linspace(*self.span, _CHORDS + 1)
+        q = np.unique(np.concatenate([q, self.knots, self._slow[0]]))
         points = np.asarray(self.track(q, 0).c[0])
         if self.closed:
             points[-1] = points[0]
@@ -213,11 +214,6 @@ class PointPath(ShortRepr):
         )
         size = float(np.abs(points - points.mean()).max())
         return self._listed(*self._met(first, second, size))
-
-    def _grid(self) -> Array:
-        low, high = self.span
-        q = np.linspace(low, high, _CHORDS + 1)
-        return np.unique(np.concatenate([q, self.knots, self._slow[0]]))
 
     def _met(self, first: Array, second: Array, size: float) -> tuple[Array, Array]:
         """Return pairs of driver angles at which both branches meet, by Newton's method."""

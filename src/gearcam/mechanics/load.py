@@ -143,9 +143,15 @@ class LoadSpec(ShortRepr, WrittenLoad):
         doc="forces, N, or torques, N m, at the places of `at`, with straight lines between",
     )
     place: Row | None = param(
-        ANGLE, default=None, ge=0, le=360, min_length=2, word="at", example=[0, 180, 360],
+        ANGLE,
+        default=None,
+        ge=0,
+        le=360,
+        min_length=2,
+        word="at",
+        example=[0, 180, 360],
         doc="cam angles of the table, from 0 to 360",
-    )  # fmt: skip
+    )
     start: float | None = param(
         ANGLE, default=None, ge=0, le=360, word="from", example=90, doc="where the load begins"
     )

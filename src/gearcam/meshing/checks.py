@@ -72,20 +72,20 @@ def interference(meshing: Meshing, limit: float) -> Iterator[Remark]:
         f"flanks of both sides overlap, phi1 = {formatted(math.degrees(meshing.phi1[worst]))} deg"
     )
     for block in meshing.blocks:
-        found, turning = block.overlaps, meshing.setup.turning
-        most = explained(meshing.setup, found)
-        bad = np.where(found.depth > most, found.depth, 0.0)
+        overlaps, turning = block.overlaps, meshing.setup.turning
+        most = explained(meshing.setup, overlaps)
+        bad = np.where(overlaps.depth > most, overlaps.depth, 0.0)
         if bad.size and bad.max() > deepest:
             k = int(bad.argmax())
             deepest, limit = float(bad[k]), float(most[k])
             one, two = (
                 f"tooth {tooth}" if tooth is not np.ma.masked else "the body"
                 for tooth in (
-                    turning.driver.tooth(found.half[0])[k],
-                    turning.driven.tooth(found.half[1])[k],
+                    turning.driver.tooth(overlaps.half[0])[k],
+                    turning.driven.tooth(overlaps.half[1])[k],
                 )
             )
-            angle = math.degrees(block.phi1[found.step[k]])
+            angle = math.degrees(block.phi1[overlaps.step[k]])
             where = f"deepest at phi1 = {formatted(angle)} deg, {one} in {two}"
     yield Remark(
         f"The wheels overlap at {_at(meshing, hit)}.",
@@ -166,8 +166,8 @@ def clearances(meshing: Meshing) -> list[Array]:
     turning, pairs = meshing.setup.turning, meshing.setup.pairs[DRIVE]
     result = []
     for own, mate, toothing in (
-        (turning.driver, turning.driven, pairs.toothings[0]),
-        (turning.driven, turning.driver, pairs.toothings[1]),
+        (turning.driver, turning.driven, pairs.wheels[0].toothing),
+        (turning.driven, turning.driver, pairs.wheels[1].toothing),
     ):
         places = toothing.tooth_places[toothing.whole]
         phi1 = turning.rolling.arc.angle(places)

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.gears.contact import FlankPairs, FlankPositions, normals, touch
-from gearcam.gears.track import WHEELS
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
 _NEAR, _FARTHER = 0.5, 20.0
@@ -93,18 +92,17 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
     step, pair, limits = sought(pairs, phi1, FlankPositions(phi1, phi1, phi1, np.zeros(phi1.shape)))
     positions, at, touching = touch(pairs, phi1[step], pairs.separation(pair), limits=limits)
     rolled = [
-        sign * (pairs.place(wheel, pair) - pairs.track.arc_length(angle))
-        for wheel, sign, angle in zip(
-            WHEELS, (side, -side), (positions.one, positions.two), strict=True
-        )
+        wheel.sigma * (wheel.place(pair) - pairs.track.arc_length(angle))
+        for wheel, angle in zip(pairs.wheels, (positions.one, positions.two), strict=True)
     ]
-    for wheel, w in zip(WHEELS, rolled, strict=True):
-        low, high = pairs.reach(wheel, pair)
+    for wheel, w in zip(pairs.wheels, rolled, strict=True):
+        low, high = wheel.reach(pair)
         touching = touching & (w >= low) & (w <= high)
     kept = outermost(step, pair, -side * positions.lead, touching)
     step, pair, positions, at = step[kept], pair[kept], positions.take(kept), at.take(kept)
     first, second = at.frames
-    (one, two), sf = pairs.toothings, [pairs.place(wheel, pair) for wheel in WHEELS]
+    one, two = (wheel.toothing for wheel in pairs.wheels)
+    sf = [wheel.place(pair) for wheel in pairs.wheels]
     normal = at.normal[0]
     point = at.foot[0] + one.ahead(first, sf[0]) * normal
     by_one, by_two, _ = at.rates

@@ -74,21 +74,21 @@ def contact_ratio(subject: Sided, limit: float) -> Iterator[Remark]:
     """
     places_by_message: dict[str, list[tuple[float, str]]] = {}
     for pairs in subject.sides:
-        worst, found = float(pairs.contact_ratios.min()), non_contact(pairs)
-        if worst >= limit and not found:
+        worst, gaps = float(pairs.arcs.ratios.min()), non_contact(pairs)
+        if worst >= limit and not gaps:
             continue
-        tooth = int(pairs.tooth(1, pairs.numbers)[pairs.weakest])
+        tooth = int(pairs.wheels[0].number(pairs.numbers)[pairs.arcs.weakest])
         message = _FEW
-        if found and all(stretch.edges for stretch in found):
-            apart = max(stretch.apart for stretch in found)
+        if gaps and all(stretch.edges for stretch in gaps):
+            apart = max(stretch.apart for stretch in gaps)
             message = (
-                f"No flanks touch at {arcs_text(found)}{_repeats(pairs)}. There tooth edges drive: "
+                f"No flanks touch at {arcs_text(gaps)}{_repeats(pairs)}. There tooth edges drive: "
                 f"they scrape, and the driven wheel is up to {formatted(apart, 3)} mm off its "
                 "position along the pitch curve."
             )
-        elif found:
+        elif gaps:
             message = (
-                f"No flanks touch at {arcs_text(found)}{_repeats(pairs)}, and in part of this "
+                f"No flanks touch at {arcs_text(gaps)}{_repeats(pairs)}, and in part of this "
                 "range nothing drives at all."
             )
         elif worst < 1.0:

@@ -151,8 +151,8 @@ def touches(pairs: FlankPairs, phi1: ArrayLike, *, exact: bool = True) -> Touche
     Touches
         Ordered by phase, then by pair.
     """
-    found, low, high = _facing(pairs, np.atleast_1d(np.asarray(phi1, dtype=float)))
-    many = found.select(np.repeat(np.arange(len(low)), _SAMPLES))
+    facing, low, high = _facing(pairs, np.atleast_1d(np.asarray(phi1, dtype=float)))
+    many = facing.select(np.repeat(np.arange(len(low)), _SAMPLES))
     angle = np.linspace(low, high, _SAMPLES, axis=1)
     turn, slope = (values.reshape(angle.shape) for values in many.compare(angle.ravel()))
     # on the driving side the largest turn counts, on the other the smallest
@@ -164,7 +164,7 @@ def touches(pairs: FlankPairs, phi1: ArrayLike, *, exact: bool = True) -> Touche
     left = np.where(falling[rows, best] > 0.0, best, before)
     right = np.where(falling[rows, best] > 0.0, after, best)
     inner = np.flatnonzero((falling[rows, left] > 0.0) & (falling[rows, right] <= 0.0))
-    extreme, some = turn[rows, best], found.select(inner)
+    extreme, some = turn[rows, best], facing.select(inner)
     if exact:
         at = bracketed_root(
             lambda x: some.compare(x)[1],
@@ -174,7 +174,7 @@ def touches(pairs: FlankPairs, phi1: ArrayLike, *, exact: bool = True) -> Touche
         )
         extreme[inner] = -pairs.side * some.compare(at)[0]
     return Touches(
-        step=found.step, pair=found.pair, turn=-pairs.side * extreme, edge=~np.isin(rows, inner)
+        step=facing.step, pair=facing.pair, turn=-pairs.side * extreme, edge=~np.isin(rows, inner)
     )
 
 
@@ -253,7 +253,7 @@ def to_pitch_line(pairs: FlankPairs, phi1: Array) -> Array:
     (n,) array
         The driven radius times the cosine of the pitch line's slope; for a rack the cosine alone.
     """
-    guide, one = pairs.guide, pairs.toothings[0].frames(phi1, curved=False)
+    guide, one = pairs.guide, pairs.wheels[0].toothing.frames(phi1, curved=False)
     pitch_point = (np.abs(one.p) - guide.place).astype(complex)
     return -guide.lever(pitch_point, one.t * np.exp(-1j * phi1))
 
@@ -275,7 +275,7 @@ def known_to(pairs: FlankPairs, phi1: Array) -> Array:
         centrode is long and the shafts are apart, and that of driver angles. It moves a flank along
         its normal, and so turns the driven wheel by as much over the lever arm of the normal.
     """
-    guide, one = pairs.guide, pairs.toothings[0]
+    guide, one = pairs.guide, pairs.wheels[0].toothing
     frames = one.frames(phi1, curved=False)
     size = pairs.track.length + abs(pairs.distance)
     turn = np.maximum(np.abs(phi1), 2.0 * np.pi)
@@ -322,7 +322,7 @@ def non_contact(pairs: FlankPairs) -> list[NonContact]:
     list of NonContact
         In order.
     """
-    start, end, carrying = pairs.stretches
+    start, end, carrying = pairs.arcs.stretches
     lobe = pairs.track.arc.period if pairs.closed and pairs.even else pairs.travel
     at = np.flatnonzero((carrying == 0) & (start < lobe * (1.0 - _ROUNDING)))
     phi1 = (start[at, None] + (end - start)[at, None] * _BETWEEN).ravel()

@@ -45,7 +45,7 @@ def jams(together: Running, limit: float) -> Iterator[Remark]:  # noqa: ARG001
 
     Looks at: least backlash over the cycle, all errors together.
     """
-    if together.least_backlash < -together.noise:
+    if together.jams:
         yield Remark(
             "With its errors the pair jams: give it more backlash or a larger centre distance.",
             _place(together, int(np.argmin(together.backlash))),

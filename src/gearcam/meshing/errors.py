@@ -1,13 +1,8 @@
-"""Errors of mounting and making: what they do to the transmission, each alone and all together.
+"""What errors of mounting and making do to the transmission.
 
-An *assembly* is a pair with its errors: the change of the centre distance, the eccentricities and
-errors of pitch of both wheels, and the tilt of the driver's axis. Nothing is linearised: flanks are
-brought into contact where their errors have put them (see `gearcam.gears.contact`). An eccentric
-wheel's teeth turn about a centre that is not theirs; wheels with an error of pitch touch with the
-tooth that is furthest ahead. A measured outline takes the place of a wheel's own flanks, and has
-its errors of making. On tilted axes the section at a height z over the middle of the face
-width is the plane pair with its shafts moved by z times the tilt, so that flanks touch first at one
-of the faces; the sections' own change, of second order in the tilt, is left out.
+Nothing is linearised: flanks are brought into contact where the errors of an assembly (see
+`gearcam.meshing.assembly`) have put them. An eccentric wheel's teeth turn about a centre that is
+not theirs; wheels with an error of pitch touch with the tooth that is furthest ahead.
 
 The *cycle* is the turn of the driver, or the turns after which the same teeth meet again. Over it
 an assembly has a transmission error, a least backlash, and a least contact ratio: that of each pair
@@ -19,8 +14,8 @@ Refused: an error with which the wheels no longer reach each other.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
@@ -28,27 +23,16 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import InfeasibleError
-from gearcam.gears.contact import (
-    COAST,
-    DRIVE,
-    FlankPairs,
-    Mounting,
-    flank_pairs,
-    turns_of_cycle,
-)
-from gearcam.gears.pair import Gear
+from gearcam.gears.contact import COAST, DRIVE, FlankPairs, Mounting, flank_pairs, turns_of_cycle
+from gearcam.meshing.assembly import Assembly, Gears
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.edges import first_touch, known_to, to_pitch_line
 from gearcam.meshing.harmonics import harmonics, too_few
-from gearcam.meshing.settings import ErrorsSpec
 from gearcam.numeric.arrays import Array, Mask
 from gearcam.numeric.roots import bracketed_root
 
 if TYPE_CHECKING:  # outlines need more than numpy
-    from gearcam.meshing.half_teeth import HalfTeeth
     from gearcam.meshing.overlap import Turning
-
-Gears = tuple[Gear, Gear]
 
 _NARROW: Final = 1e-3
 """Width of the bracket of a largest error, as a share of it."""
@@ -58,101 +42,6 @@ _FARTHEST: Final = 1000.0
 
 _SMALLEST: Final = 1e-6
 """Smallest, below which it is 0."""
-
-_SHARE: Final = 0.25
-"""Largest error of pitch, in pitches."""
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Assembly(ShortRepr):
-    """The errors of a pair.
-
-    Parameters
-    ----------
-    center : float, mm
-        Added to the centre distance; for a rack, its distance from the design position.
-    eccentric : (complex, complex), mm
-        Offset of the teeth of both wheels from their shafts, in the wheel's frame.
-    pitch : (mapping of int to float, mapping of int to float), mm
-        Errors of teeth along the pitch curve, by number.
-    tilt : complex, rad
-        Of the driver's axis: in the plane of the axes, positive if they part towards the front, and
-        across it.
-    outlines : (HalfTeeth or None, HalfTeeth or None)
-        Measured outlines in the place of the wheels' own.
-    """
-
-    center: float = 0.0
-    eccentric: tuple[complex, complex] = (0j, 0j)
-    pitch: tuple[Mapping[int, float], Mapping[int, float]] = field(default_factory=lambda: ({}, {}))
-    tilt: complex = 0j
-    outlines: tuple[HalfTeeth | None, HalfTeeth | None] = (None, None)
-
-    def times(self, factor: float) -> Assembly:
-        """Return the assembly with all errors but outlines multiplied by a `factor`."""
-        one, two = ({k: factor * v for k, v in errors.items()} for errors in self.pitch)
-        return replace(
-            self,
-            center=factor * self.center,
-            eccentric=(factor * self.eccentric[0], factor * self.eccentric[1]),
-            pitch=(one, two),
-            tilt=factor * self.tilt,
-        )
-
-    @property
-    def none(self) -> bool:
-        """Whether there are no errors."""
-        moved = self.center or self.tilt or any(self.eccentric) or any(self.pitch)
-        return not (moved or self.measured)
-
-    @property
-    def alike(self) -> bool:
-        """Whether wheel 2's teeth are alike, so that one turn of the driver is like the next."""
-        return self.outlines[1] is None and not self.mounting(0.0).turns_differ
-
-    @property
-    def measured(self) -> bool:
-        """Whether an outline was measured."""
-        return any(outline is not None for outline in self.outlines)
-
-    def mounting(self, distance: float, height: float = 0.0) -> Mounting:
-        """Return how the pair is mounted.
-
-        Parameters
-        ----------
-        distance : float, mm
-            Position of the driven frame without errors; negative for a ring.
-        height : float, mm
-            Over the middle of the face width, on tilted axes.
-        """
-        outward = math.copysign(1.0, distance)
-        return Mounting(
-            distance=distance + outward * self.center + height * self.lean(distance),
-            eccentric=self.eccentric,
-            pitch=self.pitch,
-        )
-
-    def lean(self, distance: float) -> complex:
-        """Return how far the driven shaft moves along x and y for each mm of height.
-
-        Parameters
-        ----------
-        distance : float, mm
-            Position of the driven frame; negative for a ring.
-        """
-        return complex(math.copysign(1.0, distance) * self.tilt.real, self.tilt.imag)
-
-    def mountings(self, distance: float, low: float, high: float) -> list[Mounting]:
-        """Return how the pair is mounted where it touches first: on tilted axes at both faces.
-
-        Parameters
-        ----------
-        distance : float, mm
-            See `mounting`.
-        low, high : float, mm
-            Heights of the faces over the middle of the face width.
-        """
-        return [self.mounting(distance, z) for z in ((low, high) if self.tilt else (0.0,))]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -199,7 +88,7 @@ class Running(ShortRepr):
         """Least contact ratio of all pairs of teeth on the driving side; None if not known."""
         if self.measured:
             return None
-        return min(float(one.contact_ratios.min()) for one in self.driving)
+        return min(float(one.arcs.ratios.min()) for one in self.driving)
 
     @cached_property
     def peak_to_peak(self) -> float:
@@ -240,67 +129,6 @@ class Running(ShortRepr):
         lag = np.where(np.isfinite(self.lead), -self.lead, np.nan)
         error = lag - float(np.nanmean(lag))
         return np.where(np.abs(error) <= self.known_to, 0.0, error)
-
-
-def demand(gears: Gears, assembly: Assembly, spec: ErrorsSpec | None = None) -> None:
-    """Refuse errors of teeth and shafts that a pair does not have.
-
-    Parameters
-    ----------
-    gears : (Gear, Gear)
-        The wheels.
-    assembly : Assembly
-        Their errors.
-    spec : ErrorsSpec, optional
-        Their tolerances.
-
-    Raises
-    ------
-    InfeasibleError
-        If there is one.
-    """
-    for gear, errors in zip(gears, assembly.pitch, strict=True):
-        numbers = gear.toothing.numbers[gear.toothing.whole]
-        missing = sorted(set(errors) - set(numbers))
-        if missing:
-            raise InfeasibleError(
-                f"the file has an error of pitch of a tooth that wheel {gear.wheel} does not have",
-                where="errors.file",
-                value=float(missing[0]),
-                nearest=f"its teeth are {numbers[0]} to {numbers[-1]}",
-            )
-        largest = max(map(abs, errors.values()), default=0.0)
-        _demand_below_pitch(gear, "file", largest)
-        if spec is not None:
-            _demand_below_pitch(gear, "pitch_tolerance_mm", spec.pitch_tolerance)
-    if gears[0].pair.on_rack:
-        tolerances = (0.0, 0.0) if spec is None else spec.eccentricity_tolerance
-        for key, size in (
-            ("eccentricity_mm", abs(assembly.eccentric[1])),
-            ("eccentricity_tolerance_mm", tolerances[1]),
-        ):
-            if size:
-                raise InfeasibleError(
-                    "a rack has no shaft, and so no eccentricity",
-                    where=f"errors.{key}[1]",
-                    value=size,
-                    unit="mm",
-                    nearest="give 0 for wheel 2",
-                )
-
-
-def _demand_below_pitch(gear: Gear, key: str, error: float) -> None:
-    """Refuse an error of pitch that brings a tooth into the place of the next."""
-    limit = _SHARE * math.pi * gear.pair.module
-    if error > limit:
-        raise InfeasibleError(
-            f"an error of pitch of wheel {gear.wheel} is larger than a quarter of the pitch",
-            where=f"errors.{key}",
-            value=error,
-            limit=limit,
-            unit="mm",
-            nearest="give errors in mm",
-        )
 
 
 def cycle(gears: Gears, steps: int, *, alike: bool) -> Array:
@@ -478,59 +306,6 @@ def first_of(sections: list[FlankPairs], phi1: Array) -> tuple[Array, Mask]:
     return np.stack(leads)[first], np.stack(edges)[first]
 
 
-def given(spec: ErrorsSpec) -> Assembly:
-    """Return the errors that a design gives, without its tolerances.
-
-    Parameters
-    ----------
-    spec : ErrorsSpec
-        The settings.
-
-    Returns
-    -------
-    Assembly
-    """
-    one, two = (
-        size * complex(math.cos(angle), math.sin(angle))
-        for size, angle in zip(spec.eccentricity, spec.eccentricity_angle, strict=True)
-    )
-    return Assembly(
-        center=spec.center, eccentric=(one, two), pitch=spec.pitch_errors, tilt=complex(*spec.tilt)
-    )
-
-
-def alone(assembly: Assembly) -> dict[str, Assembly]:
-    """Return each of the errors of an assembly alone.
-
-    Parameters
-    ----------
-    assembly : Assembly
-        All errors.
-
-    Returns
-    -------
-    dict of str to Assembly
-        By name, those that are not 0.
-    """
-    one, two = assembly.eccentric
-    first, second = assembly.pitch
-    every = {
-        "center": Assembly(center=assembly.center),
-        "eccentricity1": Assembly(eccentric=(one, 0j)),
-        "eccentricity2": Assembly(eccentric=(0j, two)),
-        "pitch1": Assembly(pitch=(first, {})),
-        "pitch2": Assembly(pitch=({}, second)),
-        "tilt": Assembly(tilt=assembly.tilt),
-        "outline1": Assembly(outlines=(assembly.outlines[0], None)),
-        "outline2": Assembly(outlines=(None, assembly.outlines[1])),
-    }
-    there = (
-        *(assembly.center, one, two, any(first.values()), any(second.values()), assembly.tilt),
-        *(outline is not None for outline in assembly.outlines),
-    )
-    return {name: each for (name, each), some in zip(every.items(), there, strict=True) if some}
-
-
 def largest(excess: Callable[[float], float]) -> float | None:
     """Return the largest factor of an error that keeps a limit.
 
@@ -565,58 +340,6 @@ def largest(excess: Callable[[float], float]) -> float | None:
     found = float(bracketed_root(values, [low], [high], tolerance)[0])
     # the nearer end of the last bracket may lie beyond the limit
     return found if excess(found) < 0.0 else max(low, found - tolerance)
-
-
-def random_assemblies(spec: ErrorsSpec, gears: Gears, middle: Assembly) -> Iterator[Assembly]:
-    """Yield the random assemblies of a design's tolerances.
-
-    Parameters
-    ----------
-    spec : ErrorsSpec
-        Tolerances and their distribution; the same `seed` gives the same assemblies.
-    gears : (Gear, Gear)
-        The wheels.
-    middle : Assembly
-        The errors to which random ones are added.
-
-    Yields
-    ------
-    Assembly
-    """
-    random = np.random.default_rng(spec.seed)
-
-    def within(tolerance: float, count: int = 1) -> Array:
-        if spec.distribution == "uniform":
-            return random.uniform(-tolerance, tolerance, count)
-        return random.normal(0.0, tolerance / 3.0, count)
-
-    for _ in range(spec.assemblies):
-        (center,) = within(spec.center_tolerance)
-        tilt = [float(within(tolerance)[0]) for tolerance in spec.tilt_tolerance]
-        moved = [
-            abs(within(tolerance)[0]) * np.exp(1j * random.uniform(0.0, 2.0 * math.pi))
-            for tolerance in spec.eccentricity_tolerance
-        ]
-        pitch = [
-            {
-                number: errors.get(number, 0.0) + error
-                for number, error in zip(
-                    gear.toothing.numbers,
-                    within(spec.pitch_tolerance, len(gear.toothing.numbers)).tolist(),
-                    strict=True,
-                )
-            }
-            for gear, errors in zip(gears, middle.pitch, strict=True)
-        ]
-        yield replace(
-            middle,
-            center=middle.center + float(center),
-            tilt=middle.tilt + complex(*tilt),
-            eccentric=(
-                middle.eccentric[0] + complex(moved[0]), middle.eccentric[1] + complex(moved[1]),
-            ),
-            pitch=(pitch[0], pitch[1]) if spec.pitch_tolerance else middle.pitch,
-        )  # fmt: skip
 
 
 def of_error(running: Running, gears: Gears) -> list[dict[str, float]] | str:

@@ -19,7 +19,7 @@ import shapely
 
 from gearcam.gears.flank import Curve, Toothing
 from gearcam.gears.outline import Outline
-from gearcam.numeric.arrays import Array, Ints, Plane, as_pairs
+from gearcam.numeric.arrays import Array, Ints, Plane, as_pairs, in_groups, lengths_along
 from gearcam.numeric.pose import Pose
 
 _BELOW = 0.5
@@ -143,11 +143,10 @@ class HalfTeeth:
 
     def placed(self, which: Ints, pose: Pose) -> Any:
         """Return half-teeth `which` as polygons, each in its place by one of the n poses `pose`."""
-        sizes = self.starts[which + 1] - self.starts[which]
-        owner = np.repeat(np.arange(len(which)), sizes)
-        first = np.cumsum(sizes) - sizes
-        index = np.arange(len(owner)) - first[owner] + self.starts[which][owner]
-        places = self.points[index] * pose.rotation[owner] + pose.shift[owner]
+        first = self.starts[which]
+        sizes = self.starts[which + 1] - first
+        owner, place = in_groups(sizes)
+        places = self.points[first[owner] + place] * pose.rotation[owner] + pose.shift[owner]
         return as_polygons(places, sizes)
 
 
@@ -211,7 +210,7 @@ def _middles(outline: Outline) -> tuple[Plane, Ints, Ints, bool]:
     lands, tip_first = _lands(outline, j[-1])
     size = len(j) - 1
     ring = np.append(points, points[:1])[: size + 1]
-    way = np.append(0.0, np.cumsum(np.abs(np.diff(ring))))
+    way = lengths_along(ring)
     # the first tip of a closed wheel begins before the closing point
     j, way = (np.concatenate([one[:-1] - one[-1], one]) for one in (j, way))
     ring = np.concatenate([ring[:-1], ring])

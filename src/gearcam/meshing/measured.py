@@ -31,7 +31,7 @@ from gearcam.gears.rolling import Guide
 from gearcam.meshing.edges import of_leading_pair
 from gearcam.meshing.half_teeth import HalfTeeth
 from gearcam.meshing.overlap import Turning
-from gearcam.numeric.arrays import Array, Ints, Plane, as_complex, as_pairs
+from gearcam.numeric.arrays import Array, Ints, Plane, as_complex, as_pairs, lengths_along
 
 _NEAR: Final = 0.4
 """Largest distance between the measured outline and the wheel's own, in modules: a flank that is
@@ -50,14 +50,14 @@ _INCH: Final = 25.4
 _SCALED: Final = 0.03
 """Difference of sizes, as a share, that no error of making explains."""
 
-_ANGLES: Final = 720
-"""Rotations that are tried to find out by how much an outline is turned."""
+_ANGLES: Final = 1 << 19
+"""Least number of rotations that are tried to find out by how much an outline is turned."""
 
-_TRIED: Final = 120
-"""Points of it that are tried."""
+_AS_NEAR: Final = 0.01
+"""Difference of radii, in modules, with which rotations fit equally well."""
 
-_AS_NEAR: Final = 1.2
-"""Factor within which rotations fit equally well."""
+_SMALL: Final = 0.1
+"""Distance, in modules, that is too small to be a cause."""
 
 _CHORDS: Final = 0.9
 """Share of the chords whose error is not exceeded."""
@@ -154,7 +154,7 @@ def _cause(outline: Plane, own: Plane, module: float) -> str:
         return f"has {teeth[0]} teeth; that of the wheel has {teeth[1]}"
     if abs(scale - 1.0) > _SCALED:
         return f"is {formatted(scale, 3)} times as large as the wheel"
-    return _misplaced(outline, own, _NEAR * module, teeth[1])
+    return _misplaced(outline, own, module, teeth[1])
 
 
 def _teeth(outline: Plane, module: float) -> int:
@@ -165,57 +165,55 @@ def _teeth(outline: Plane, module: float) -> int:
     return int(np.sum(shapely.area(shapely.get_parts(rest)) > _TOOTH * module**2))
 
 
-def _misplaced(outline: Plane, own: Plane, limit: float, teeth: int) -> str:
+def _misplaced(outline: Plane, own: Plane, module: float, teeth: int) -> str:
     """Return by how much an outline is off centre and turned, if that brings it to the wheel."""
-    middles = [shapely.Polygon(as_pairs(one)).centroid for one in (outline, own)]
+    middles = [shapely.Polygon(as_pairs(each)).centroid for each in (outline, own)]
     middles = [complex(middle.x, middle.y) for middle in middles]
-    centred, edge = outline - middles[0], shapely.Polygon(as_pairs(own - middles[1])).exterior
-    coarse = edge.simplify(0.1 * limit)
-    turns, fit = _best_turns(centred, coarse, teeth)
-    flipped, mirrored = _best_turns(centred.conj(), coarse, teeth)
-    if mirrored < fit and _near(centred.conj() * np.exp(1j * flipped[0]), edge, limit):
-        return "is mirrored: it is that of the wheel seen from the other side"
+    centred, wanted = outline - middles[0], own - middles[1]
+    edge = shapely.LinearRing(as_pairs(wanted))
+    small, limit = _SMALL * module, _NEAR * module
+    turns = _best_turns(centred, wanted, module, teeth)
     # the likely cause: the least offset, and then the least angle
-    offsets = np.abs(middles[0] - middles[1] * np.exp(-1j * turns)) // (limit / 4.0)
+    offsets = np.abs(middles[0] - middles[1] * np.exp(-1j * turns)) // small
     best = float(turns[np.lexsort([np.abs(turns), offsets])[0]])
-    if not _near(centred * np.exp(1j * best), edge, limit):
+    off = float(_distances(centred * np.exp(1j * best), edge).max())
+    if off > small:  # a symmetric wheel fits as well from the other side
+        flipped = _best_turns(centred.conj(), wanted, module, teeth)[0]
+        mirrored = float(_distances(centred.conj() * np.exp(1j * flipped), edge).max())
+        if mirrored <= min(limit, off - small):
+            return "is mirrored: it is that of the wheel seen from the other side"
+    if off > limit:
         worst = outline[int(_distances(centred, edge).argmax())]
         place = f"x = {formatted(worst.real, 4)}, y = {formatted(worst.imag, 4)} mm"
         return f"is not that of this wheel, at {place} above all"
     turned = -math.remainder(best, 2.0 * math.pi)
     offset = middles[0] - middles[1] * np.exp(1j * turned)
-    found = []
-    if abs(offset) > limit / 4.0:
-        found.append(
+    causes = []
+    if abs(offset) > small:
+        causes.append(
             f"off centre by x = {formatted(offset.real, 3)}, y = {formatted(offset.imag, 3)} mm"
         )
-    if abs(turned) * np.abs(own).max() > limit / 4.0:
-        found.append(f"turned by {formatted(math.degrees(turned), 3)} deg")
-    return "is " + " and ".join(found or ["too far from that of the wheel"])
+    if abs(turned) * np.abs(own).max() > small:
+        causes.append(f"turned by {formatted(math.degrees(turned), 3)} deg")
+    return "is " + " and ".join(causes or ["too far from that of the wheel"])
 
 
-def _near(points: Plane, edge: Any, limit: float) -> bool:
-    return bool(_distances(points, edge).max() <= limit)
-
-
-def _best_turns(outline: Plane, edge: Any, teeth: int) -> tuple[Array, float]:
-    """Return the angles that turn an outline nearest to another, and how near, mm."""
-    some = outline[:: max(1, len(outline) // _TRIED)]
-
-    def fits(angles: Array) -> Array:
-        return np.array([_distances(some * np.exp(1j * one), edge).mean() for one in angles])
-
-    angles = 2.0 * math.pi * np.arange(_ANGLES) / _ANGLES
-    step = angles[1]
-    best = float(angles[np.argmin(fits(angles))])
-    for _ in range(3):
-        tried = best + np.linspace(-step, step, 21)
-        best, step = float(tried[np.argmin(fits(tried))]), tried[1] - tried[0]
+def _best_turns(outline: Plane, own: Plane, module: float, teeth: int) -> Array:
+    """Return the angles, rad, that turn an outline nearest to another: the best, and its like."""
+    count = teeth * math.ceil(_ANGLES / teeth)
+    angles = 2.0 * math.pi * np.arange(count) / count
+    radii, wanted = (
+        np.interp(angles, np.angle(points), np.abs(points), period=2.0 * math.pi)
+        for points in (outline, own)
+    )
+    # root mean squares of the differences of radii after each turn, by Fourier transforms
+    product = np.fft.irfft(np.fft.rfft(wanted) * np.fft.rfft(radii).conj(), count)
+    square = np.mean(radii**2 + wanted**2) - 2.0 * product / count
+    misfit = np.sqrt(np.maximum(square, 0.0))
     # a round wheel fits after each tooth, one with lobes after each of them
-    alike = best + 2.0 * math.pi * np.arange(teeth) / teeth
-    alike = alike - 2.0 * math.pi * np.round(alike / (2.0 * math.pi))
-    far = fits(alike)
-    return alike[far <= _AS_NEAR * far[0]], float(far[0])
+    like = (misfit.argmin() + count // teeth * np.arange(teeth)) % count
+    turns = angles[like[misfit[like] <= misfit.min() + _AS_NEAR * module]]
+    return np.where(turns > math.pi, turns - 2.0 * math.pi, turns)
 
 
 def chord_error(outline: Plane, own: Plane) -> float:
@@ -264,7 +262,7 @@ def as_half_teeth(outline: Plane, own: HalfTeeth, chord_error: float) -> HalfTee
     """
     ring: Any = shapely.LinearRing(as_pairs(outline))
     corners = as_complex(ring.coords)
-    way = np.append(0.0, np.cumsum(np.abs(np.diff(corners))))
+    way = lengths_along(corners)
     parts = []
     for start, end in zip(own.starts[:-1], own.starts[1:], strict=True):
         if len(parts) == own.count:  # the body of an open wheel
@@ -294,7 +292,7 @@ def _between(corners: Plane, way: Array, first: float, last: float) -> Plane:
     along = np.concatenate([way[:-1], way[:-1] + whole])
     inside = np.flatnonzero((along > first) & (along < end))
     places = np.concatenate([[first], along[inside], [end]]) % whole
-    return np.interp(places, way, corners.real) + 1j * np.interp(places, way, corners.imag)
+    return np.interp(places, way, corners)
 
 
 def outline_leads(turning: Turning, pairs: FlankPairs, phi1: Array) -> Array:

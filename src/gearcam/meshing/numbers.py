@@ -33,7 +33,7 @@ def numbers(meshing: Meshing) -> dict[str, Any]:
     setup = meshing.setup
     pairs = setup.pairs[setup.side]
     turning = setup.turning
-    start, end, carrying = pairs.stretches
+    start, end, carrying = pairs.arcs.stretches
     result = {
         "complete": meshing.complete,
         "steps": meshing.asked,
@@ -41,7 +41,7 @@ def numbers(meshing: Meshing) -> dict[str, Any]:
         "overclosure_deg": float(np.degrees(setup.spec.overclosure)),
         "penetration_mm": setup.penetration,
         "chord_error_mm": max(turning.driver.chord_error, turning.driven.chord_error),
-        "contact_ratio": _extent(pairs.contact_ratios),
+        "contact_ratio": _extent(pairs.arcs.ratios),
         "arcs": [
             {"from_deg": float(a), "to_deg": float(b), "pairs": int(n)}
             for a, b, n in zip(np.degrees(start), np.degrees(end), carrying, strict=True)
@@ -115,7 +115,8 @@ def transmission(meshing: Meshing) -> dict[str, Any]:
         error["no_harmonics"] = reason
     else:
         start, end = setup.stretch
-        turns, teeth = round((end - start) / (2.0 * np.pi)), setup.pairs[DRIVE].toothings[0].teeth
+        turns = round((end - start) / (2.0 * np.pi))
+        teeth = setup.pairs[DRIVE].wheels[0].toothing.teeth
         error["harmonics"] = harmonics(lead, start, turns, teeth, least)
     return {"lag_mm": _extent((0.0 - lead * along)[touching]), "transmission_error": error}
 
@@ -136,7 +137,7 @@ def without_harmonics(meshing: Meshing, touching: Mask) -> str:
         Reason and remedy.
     """
     spec, pairs = meshing.setup.spec, meshing.setup.pairs[DRIVE]
-    teeth = pairs.toothings[0].teeth
+    teeth = pairs.wheels[0].toothing.teeth
     turns = (meshing.setup.stretch[1] - meshing.setup.stretch[0]) / (2.0 * np.pi)
     if not pairs.closed:
         return "the driver does not turn all around"

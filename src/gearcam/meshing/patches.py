@@ -195,14 +195,15 @@ def _overlapping(pairs: FlankPairs, phi1: Array, overclosure: float, lead: Array
     step, pair, limits = sought(pairs, phi1, nominal)
     positions, motion, ahead, moved = nominal.take(step), motion[:, step], ahead[step], moved[step]
     center, at = _shared(pairs, positions, pairs.separation(pair), motion, limits)
-    (first, second), (one, two) = at.frames, pairs.toothings
-    sf = [pairs.place(wheel, pair) for wheel in WHEELS]
+    first, second = at.frames
+    one, two = (wheel.toothing for wheel in pairs.wheels)
+    sf = [wheel.place(pair) for wheel in pairs.wheels]
     with np.errstate(divide="ignore", invalid="ignore"):
         curvature = first.kappa / one.regularity(first, sf[0], side)
         curvature = curvature + second.kappa / two.regularity(second, sf[1], -side)
     turn = np.stack([np.exp(-1j * ahead), guide.pose(moved).rotation])
     origin = at.foot[0] + one.ahead(first, sf[0]) * at.normal[0]
-    foot = np.stack([p + e for p, e in zip((first.p, second.p), pairs.eccentric, strict=True)])
+    foot = np.stack([f.p + w.eccentric for f, w in zip(at.frames, pairs.wheels, strict=True)])
     offset = at.foot - foot * turn - origin
     # the tangent towards the driver's tip is the x-axis
     level = 1j * np.conj(at.normal[0])
@@ -244,7 +245,7 @@ def _shared(
         slopes = np.stack([at.slopes[:, 1], at.slopes[:, 2], by], axis=1)
         return at, at.equations + x[2] * by, slopes
 
-    scale = pairs.toothings[0].frames(positions.one, curved=False).speed / pairs.pitch
+    scale = pairs.wheels[0].toothing.frames(positions.one, curved=False).speed / pairs.pitch
     x = np.stack([positions.one, positions.two, none])
     x, at = damped_newton(evaluate, x, scale, _SMALL, limits)
     return x[:2], at

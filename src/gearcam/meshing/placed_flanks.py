@@ -10,7 +10,7 @@ from typing import Self
 import numpy as np
 
 from gearcam.gears.contact import FlankPairs
-from gearcam.gears.track import WHEELS, Wheel
+from gearcam.gears.track import Wheel
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.roots import newton_in_bracket
 
@@ -43,14 +43,14 @@ class PlacedFlanks:
     @cached_property
     def sf(self) -> Array:
         """Position sf of both flanks, (2, n), mm."""
-        return np.stack([self.pairs.place(wheel, self.pair) for wheel in WHEELS])
+        return np.stack([wheel.place(self.pair) for wheel in self.pairs.wheels])
 
     @cached_property
     def ends(self) -> Array:
         """Driver angles, rad, of root and tip of both flanks, (2, 2, n)."""
         rolls = [
-            sf - self.pairs.sigma(wheel) * np.stack(self.pairs.reach(wheel, self.pair))
-            for wheel, sf in zip(WHEELS, self.sf, strict=True)
+            sf - wheel.sigma * np.stack(wheel.reach(self.pair))
+            for wheel, sf in zip(self.pairs.wheels, self.sf, strict=True)
         ]
         return self.pairs.track.angle(np.stack(rolls))
 
@@ -71,10 +71,10 @@ class PlacedFlanks:
         -------
         points, directions : (n,) complex arrays, mm and mm/rad (or 1)
         """
-        toothing, turn = self.pairs.toothings[wheel - 1], self.turn[wheel - 1]
-        sigma, sf = self.pairs.sigma(wheel), self.sf[wheel - 1]
+        flanks, turn = self.pairs.wheels[wheel - 1], self.turn[wheel - 1]
+        toothing, sigma, sf = flanks.toothing, flanks.sigma, self.sf[wheel - 1]
         frames = toothing.frames(angle, curved=not unit)
-        point = toothing.flank_points(frames, sf, sigma) + self.pairs.eccentric[wheel - 1]
+        point = toothing.flank_points(frames, sf, sigma) + flanks.eccentric
         if unit:
             direction = toothing.turn * toothing.normals(frames, sigma)
         else:

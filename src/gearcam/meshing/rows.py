@@ -104,10 +104,10 @@ def columns_of(blocks: list[Block], turning: Turning, side: int) -> dict[str, Ar
 
 
 def _columns(block: Block, turning: Turning, side: int) -> dict[str, Array]:
-    found, exact, patch, solid = block.overlaps, block.contacts, block.patches, block.solids
+    overlaps, exact, patch, solid = block.overlaps, block.contacts, block.patches, block.solids
     wheels = turning.driver, turning.driven
     keys = [
-        (found.step, *found.half),
+        (overlaps.step, *overlaps.half),
         *(
             (each.step, *(wheel.of_pair(each.pair, side) for wheel in wheels))
             for each in (exact, patch)
@@ -136,13 +136,13 @@ def _columns(block: Block, turning: Turning, side: int) -> dict[str, Array]:
         "side": np.where(one % 2 == 0, 1.0, -1.0),
         "facing": turning.face(block.phi1[step], one, two).astype(float),
         "carries": np.isin(np.arange(size), rows[1]).astype(float),
-        "area_mm2": column(0, found.area).filled(0.0),
+        "area_mm2": column(0, overlaps.area).filled(0.0),
         "predicted_mm2": column(2, patch.area),
         "closed_mm2": column(2, patch.closed),
-        "depth_mm": column(0, found.depth),
-        "length_mm": column(0, found.length),
-        "patch_from_mm": column(0, found.radius[0]),
-        "patch_to_mm": column(0, found.radius[1]),
+        "depth_mm": column(0, overlaps.depth),
+        "length_mm": column(0, overlaps.length),
+        "patch_from_mm": column(0, overlaps.radius[0]),
+        "patch_to_mm": column(0, overlaps.radius[1]),
         **{
             name: column(1, values)
             for name, values in contact_columns(exact, turning.distance).items()

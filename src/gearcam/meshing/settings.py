@@ -81,12 +81,13 @@ class MeshingSpec(ShortRepr):
     rules = (
         above("end", "start", why="the study would end before it begins, at {}"),
         excluded(
-            "overclosure", 0,
+            "overclosure",
+            0,
             why="without an overclosure no flanks overlap, and the study finds no contact",
             allowed="-1 to 1, but not 0; 0.005 is usual",
         ),
         distinct("teeth", "tooth"),
-    )  # fmt: skip
+    )
 
 
 _TRIALS: Final = 100

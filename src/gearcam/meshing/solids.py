@@ -22,6 +22,7 @@ import shapely
 from gearcam.meshing.half_teeth import HalfTeeth
 from gearcam.meshing.overlap import Turning
 from gearcam.numeric.arrays import Array, Ints, Plane
+from gearcam.numeric.contour import polygon_area
 
 _ALONG = 20.0
 """Points along a patch in a picture."""
@@ -122,21 +123,21 @@ class Bodies:
         pose = turning.pose(phi1, overclosure, lead)
         motion = self.motions(phi1, overclosure, lead)
         step, one, two = turning.near(pose, abs(self.tilt) * self.reach)
-        found: list[tuple[int, float, Array]] = []
+        shared: list[tuple[int, float, Array]] = []
         for k, (at, first, second) in enumerate(
             zip(step.tolist(), one.tolist(), two.tolist(), strict=True)
         ):
             volume, vertices = self.prisms.overlap(first, second, motion[at])
             if volume > 0.0:
-                found.append((k, volume, vertices))
-        rows = np.array([k for k, *_ in found], dtype=np.int64)
-        counts = np.array([len(vertices) for *_, vertices in found], dtype=np.int64)
-        points = np.concatenate([np.empty((0, 3)), *(vertices for *_, vertices in found)])
+                shared.append((k, volume, vertices))
+        rows = np.array([k for k, *_ in shared], dtype=np.int64)
+        counts = np.array([len(vertices) for *_, vertices in shared], dtype=np.int64)
+        points = np.concatenate([np.empty((0, 3)), *(vertices for *_, vertices in shared)])
         height, radius = self._from_axis(points, np.repeat(step[rows], counts), motion)
         return SolidOverlaps(
             step=step[rows],
             half=np.stack([one[rows] + turning.driver.first, two[rows] + turning.driven.first]),
-            volume=np.array([volume for _, volume, _ in found]),
+            volume=np.array([volume for _, volume, _ in shared]),
             start=np.append(0, np.cumsum(counts)),
             height=height,
             radius=radius,
@@ -197,12 +198,7 @@ def bodies(turning: Turning, make: PrismMaker, tilt: complex, low: float, high: 
 def _outlines(wheel: HalfTeeth) -> list[Plane]:
     """Return the outlines of half-teeth, then of the body, counter-clockwise."""
     every = [wheel.points[a:b] for a, b in zip(wheel.starts[:-1], wheel.starts[1:], strict=True)]
-    return [one if _twice_area(one) > 0.0 else one[::-1] for one in every]
-
-
-def _twice_area(outline: Plane) -> float:
-    middle = outline - outline.mean()
-    return float((np.conj(middle) * np.roll(middle, -1)).imag.sum())
+    return [one if polygon_area(one) > 0.0 else one[::-1] for one in every]
 
 
 def _about_z(angle: Array) -> Array:

@@ -22,9 +22,10 @@ from gearcam.base.numerals import formatted
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, Mounting, flank_pairs
 from gearcam.gears.outline import Outline
 from gearcam.gears.pair import FINEST, Gear, GearPair
+from gearcam.meshing.assembly import Assembly, demand
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.edges import first_touch, to_pitch_line
-from gearcam.meshing.errors import Assembly, demand, first_of
+from gearcam.meshing.errors import first_of
 from gearcam.meshing.half_teeth import half_teeth
 from gearcam.meshing.overlap import Overlaps, Turning
 from gearcam.meshing.patches import patches
@@ -309,16 +310,16 @@ def _mountings(gears: tuple[Gear, Gear], spec: MeshingSpec, condition: Condition
     demand(gears, condition.errors)
     pair = gears[0].pair
     distance, depth = _distance(pair, spec), 2.0 * pair.rack.addendum * pair.module
-    found = [condition.errors.mounting(distance)]
+    mountings = [condition.errors.mounting(distance)]
     if condition.errors.tilt:
-        found += condition.errors.mountings(distance, condition.low, condition.high)
-    apart = max(abs(abs(one.distance) - abs(distance)) for one in found)
+        mountings += condition.errors.mountings(distance, condition.low, condition.high)
+    apart = max(abs(abs(one.distance) - abs(distance)) for one in mountings)
     if not pair.on_rack and apart >= depth:
         where = "errors.tilt_deg" if condition.errors.tilt else "errors.center_mm"
         what = f"with this error the teeth are up to {formatted(apart, 3)} mm out of mesh"
         note = f"the teeth reach {formatted(depth, 3)} mm into each other"
         raise InfeasibleError(what, where=where, nearest=note)
-    return found
+    return mountings
 
 
 def stretch(spec: MeshingSpec, pairs: FlankPairs) -> tuple[float, float]:
@@ -373,8 +374,8 @@ def phases(spec: MeshingSpec, pairs: FlankPairs) -> Array:
     if spec.teeth is None:
         return phi1
     track = pairs.track
-    wanted = np.isin(pairs.tooth(1, pairs.numbers), spec.teeth)
-    start, end = (track.arc_length(edge[wanted]) for edge in pairs.arcs)
+    wanted = np.isin(pairs.wheels[0].number(pairs.numbers), spec.teeth)
+    start, end = (track.arc_length(edge[wanted]) for edge in (pairs.arcs.start, pairs.arcs.end))
     apart = track.arc_length(phi1)[:, None] - start
     margin = _BESIDE * pairs.pitch
     if pairs.closed:

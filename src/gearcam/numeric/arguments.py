@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Sequence
+from collections.abc import Collection
 from typing import TypeVar
 
 import numpy as np
@@ -178,7 +178,7 @@ def whole(name: str, value: object, least: int) -> int:
     return found
 
 
-def one_of(name: str, value: object, known: Sequence[str]) -> str:
+def one_of(name: str, value: object, known: Collection[str]) -> str:
     """Return the value if it is one of some words.
 
     Parameters
@@ -187,7 +187,7 @@ def one_of(name: str, value: object, known: Sequence[str]) -> str:
         Name of the parameter.
     value : object
         Given value.
-    known : sequence of str
+    known : collection of str
         Allowed words.
 
     Returns

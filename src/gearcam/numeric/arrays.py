@@ -76,10 +76,24 @@ def divided(values: ArrayOrPlane, counts: Ints) -> ArrayOrPlane:
     -------
     (sum(counts) + 1,) array
     """
-    first, step = (np.repeat(one, counts) for one in (values[:-1], np.diff(values) / counts))
-    number = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
-    made: Any = np.append(first + number * step, values[-1])
+    group, place = in_groups(counts)
+    step = np.diff(values) / counts
+    made: Any = np.append(values[:-1][group] + place * step[group], values[-1])
     return made
+
+
+def in_groups(counts: Ints) -> tuple[Ints, Ints]:
+    """Return of entries in groups of `counts` (n,) the numbers of their groups, and their places.
+
+    Both (sum(counts),), the places from 0 in each group.
+    """
+    group = np.repeat(np.arange(len(counts)), counts)
+    return group, np.arange(len(group)) - (np.cumsum(counts) - counts)[group]
+
+
+def lengths_along(points: Plane) -> Array:
+    """Return the length of a chain of points (n,) from the first up to each of them, (n,)."""
+    return np.append(0.0, np.cumsum(np.abs(np.diff(points))))
 
 
 def bounds(points: Plane) -> tuple[complex, complex]:

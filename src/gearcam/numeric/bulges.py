@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from gearcam.numeric.arrays import Array, Ints, Plane
+from gearcam.numeric.arrays import Array, Ints, Plane, in_groups
 
 BLOCK = 20_000
 """Distances computed at once in the search for the nearest of all pieces."""
@@ -94,8 +94,8 @@ def divided(start: Plane, chord: Plane, bends: Array, count: Ints) -> tuple[Plan
     piece : (m,) int array
         The number of its piece.
     """
-    piece = np.repeat(np.arange(len(start)), count)
-    share = (np.arange(len(piece)) - np.repeat(np.cumsum(count) - count, count)) / count[piece]
+    piece, place = in_groups(count)
+    share = place / count[piece]
     return start[piece] + on_arcs(chord[piece], bends[piece], share)[0], piece
 
 
@@ -211,20 +211,20 @@ def farthest(targets: Plane, points: Plane, bulges: Array) -> float:
     steps = np.abs(np.diff(targets, append=targets[0]))
     way = (np.cumsum(steps) - steps) * (lengths[-1] / steps.sum())
     piece = np.minimum(np.searchsorted(lengths, way, side="right"), len(start) - 1)
-    found, side = measured(targets, piece)
+    least, side = measured(targets, piece)
     todo = np.flatnonzero(side)
     while todo.size:
         tried = (piece[todo] + side[todo]) % len(start)
         away, beyond = measured(targets[todo], tried)
-        nearer = away < found[todo]
+        nearer = away < least[todo]
         todo, tried = todo[nearer], tried[nearer]
-        piece[todo], found[todo], side[todo] = tried, away[nearer], beyond[nearer]
+        piece[todo], least[todo], side[todo] = tried, away[nearer], beyond[nearer]
         todo = todo[side[todo] != 0]
-    largest, every, order = 0.0, np.arange(len(start)), np.argsort(-found)
+    largest, every, order = 0.0, np.arange(len(start)), np.argsort(-least)
     count = max(1, BLOCK // len(start))
     for first in range(0, len(order), count):
         worst = order[first : first + count]
-        if found[worst[0]] <= largest:
+        if least[worst[0]] <= largest:
             break
         largest = max(largest, float(measured(targets[worst, None], every)[0].min(axis=1).max()))
     return largest

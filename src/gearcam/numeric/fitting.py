@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from gearcam.numeric.arrays import Array, Ints, Plane
+from gearcam.numeric.arrays import Array, Ints, Plane, in_groups
 from gearcam.numeric.contour import Run
 from gearcam.numeric.hermite import on_cubics
 
@@ -178,14 +178,13 @@ def largest(measure: Callable[[Ints, Ints], Array], low: Ints, high: Ints) -> Ar
         0 for an empty range.
     """
     count = np.maximum(high - low, 0)
-    begin = np.cumsum(count) - count
-    of = np.repeat(np.arange(len(low)), count)
+    of, place = in_groups(count)
     found, some = np.zeros(len(low)), count > 0
     if of.size:
-        index = np.arange(of.size) + (low - begin)[of]
+        index = low[of] + place
         parts = [slice(at, at + _BLOCK) for at in range(0, of.size, _BLOCK)]
         measured = np.concatenate([measure(index[part], of[part]) for part in parts])
-        found[some] = np.maximum.reduceat(measured, begin[some])
+        found[some] = np.maximum.reduceat(measured, np.flatnonzero(place == 0))
     return found
 
 
@@ -217,12 +216,12 @@ def longest_pieces(
         First and last points of the pieces, in order.
     """
     start, last = rows.first, rows.last
-    found: list[tuple[Ints, Ints]] = []
+    pieces: list[tuple[Ints, Ints]] = []
     low, high, trial = start + 1, last, last
     while start.size:
         done = high - low <= near * (low - start)
         if done.any():
-            found.append((start[done], low[done]))
+            pieces.append((start[done], low[done]))
             trial = np.where(done, 2 * low - start, trial)
             start = np.where(done, low, start)
             left = start < last
@@ -246,5 +245,5 @@ def longest_pieces(
         growth = (tolerance / np.maximum(error, tolerance / _GROWTH**order)) ** (1 / order)
         high = np.where((trial == low) & (growth <= 1 + near), low, high)
         trial = start + np.rint(_AIM * growth * (trial - start)).astype(np.int64)
-    starts, ends = (np.sort(np.concatenate(one)) for one in zip(*found, strict=True))
+    starts, ends = (np.sort(np.concatenate(one)) for one in zip(*pieces, strict=True))
     return starts, ends

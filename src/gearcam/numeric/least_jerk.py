@@ -167,10 +167,9 @@ def _solved(diagonal: Array, beside: Array, wanted: Array) -> Array:
             matrix[k, :, k] += diagonal[k]
             matrix[k, :, after] += beside[k]
             matrix[after, :, k] += beside[k].T
-        found = np.empty_like(wanted)
         flat = matrix.reshape(count * size, -1)
-        found[...] = np.linalg.solve(flat, wanted.ravel()).reshape(wanted.shape)
-        return found
+        solution = np.linalg.solve(flat, wanted.ravel()).reshape(wanted.shape)
+        return np.asarray(solution, dtype=float)
     odd = np.arange(1, count, 2) if count % 2 == 0 else np.arange(1, count - 1, 2)
     before, after = beside[odd - 1], beside[odd].transpose(0, 2, 1)
     known = np.concatenate([before.transpose(0, 2, 1), beside[odd], wanted[odd]], axis=2)
@@ -184,7 +183,7 @@ def _solved(diagonal: Array, beside: Array, wanted: Array) -> Array:
     left[following] -= after @ own
     coupled = np.concatenate([-before @ on, beside[count - count % 2 :]])
     even = _solved(rest, coupled, left)
-    found = np.empty_like(wanted)
-    found[::2] = even
-    found[odd] = own - back @ even[here] - on @ even[following]
-    return found
+    solution = np.empty_like(wanted)
+    solution[::2] = even
+    solution[odd] = own - back @ even[here] - on @ even[following]
+    return solution

@@ -211,7 +211,7 @@ def damped_newton(
 
     every = rows = np.arange(x.shape[1])
     x = held(x, rows)
-    found = x.copy()
+    roots = x.copy()
     _, equations, slopes = evaluate(x, rows)
     share, last, before = np.ones(x.shape[1]), np.zeros_like(x), np.zeros(x.shape[1])
     for _ in range(_DAMPED):
@@ -222,7 +222,7 @@ def damped_newton(
             share = np.where(back, 0.5 * share, np.minimum(1.0, 2.0 * share))
             last, before = step * np.minimum(share, _LONGEST / size), size
         x = held(x + np.where(np.isfinite(last), last, 0.0), rows)
-        found[:, rows] = x
+        roots[:, rows] = x
         going = size > small
         if not going.any():
             break
@@ -230,7 +230,7 @@ def damped_newton(
             rows, x, share = rows[going], x[:, going], share[going]
             last, before = last[:, going], before[going]
         _, equations, slopes = evaluate(x, rows)
-    return found, evaluate(found, every)[0]
+    return roots, evaluate(roots, every)[0]
 
 
 def solve(matrix: Array, right: Array) -> Array:

@@ -374,13 +374,10 @@ class Sampler(ShortRepr):
             rank = np.insert(rank, long + 1, len(groups))
             new = long + 1 + np.arange(long.size)
             points, tangents = np.insert([points, tangents], long + 1, self.at(j[new]), axis=1)
-        made = Dense(j, points, tangents, rank, self._left_ends(j[rank == 0][1:]))
-        return made.merged(_GRAIN * self.tolerance)
-
-    def _left_ends(self, j: Array) -> tuple[Plane, Plane]:
-        """Points and tangents at the ends of the curves that end at corners."""
-        index = np.searchsorted(self.joints, j) - 1
-        return self.curves.at(index, self.curves.end[index])
+        # before each corner the end of the curve there
+        curve = np.searchsorted(self.joints, j[rank == 0][1:]) - 1
+        ends = self.curves.at(curve, self.curves.end[curve])
+        return Dense(j, points, tangents, rank, ends).merged(_GRAIN * self.tolerance)
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,7 +18,7 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, divided
 from gearcam.numeric.nets import SplineNet
 from gearcam.numeric.roots import bracketed_root
 from gearcam.parts.bands import Band, BandedBody, FlatBand, RoundBand, SplineBand
@@ -146,11 +146,7 @@ def _cuts(cam: SpatialCam) -> Array:
     )
     least = 1 + (none[:-1] & none[1:] & ~inside)
     counts = np.maximum(np.ceil(np.diff(ends) / _QUARTER - 1e-9).astype(int), least)
-    rows = [
-        np.linspace(low, high, count, endpoint=False)
-        for (low, high), count in zip(pairwise(ends), counts, strict=True)
-    ]
-    return np.append(np.concatenate(rows), ends[-1])
+    return divided(ends, counts)
 
 
 def _apart(ends: Array, more: list[float]) -> Array:

@@ -221,16 +221,16 @@ def openings(
     """
     solid = solid_of(contours, inner, work)
     wide = blank.widened
-    found = [Opening(kind="BORE", shape=bore(wide), name="bore")] if blank.bore else []
-    found += _bolts(wide)
+    made = [Opening(kind="BORE", shape=bore(wide), name="bore")] if blank.bore else []
+    made += _bolts(wide)
     if blank.stop_pin:
         chord = max((one.tolerance for one in contours if isinstance(one, Contour)), default=0.0)
-        found.append(_slot(blank, solid, work, chord))
+        made.append(_slot(blank, solid, work, chord))
     bolts = {"bolt_circle_mm": blank.bolt_circle}
-    demand_apart(found, solid, work, bolts, hub=blank.hub_diameter, widening=blank.widening)
+    demand_apart(made, solid, work, bolts, hub=blank.hub_diameter, widening=blank.widening)
     if blank.lightening_holes:
-        found += _lightening(wide, solid, found, work)
-    return tuple(found)
+        made += _lightening(wide, solid, made, work)
+    return tuple(made)
 
 
 def demand_apart(

@@ -20,7 +20,7 @@ import numpy as np
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import formatted
-from gearcam.numeric.arrays import Array, Ints, Mask, Plane
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane, in_groups
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.crossings import Chain, remaining, rows_between
 from gearcam.numeric.hermite import on_cubics
@@ -247,10 +247,9 @@ def _densified(run: Run, radius: float, tolerance: float) -> Run:
     parts = np.maximum(np.ceil(np.sqrt(bow / (_DENSE * tolerance))), 1.0).astype(np.int64)
     if (parts == 1).all():
         return run
-    first = np.concatenate([[0], np.cumsum(parts)])
-    step = np.repeat(np.arange(len(parts)), parts)
-    share = (np.arange(len(step)) - first[step]) / parts[step]
-    points, tangents = on_cubics(p, t, step, share)
+    step, place = in_groups(parts)
+    points, tangents = on_cubics(p, t, step, place / parts[step])
+    first = np.append(0, np.cumsum(parts))
     joints = tuple(int(first[joint]) for joint in run.joints)
     return Run(points=np.append(points, p[-1]), tangents=np.append(tangents, t[-1]), joints=joints)
 

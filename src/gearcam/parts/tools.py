@@ -20,7 +20,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from gearcam.base.display import ShortRepr
-from gearcam.numeric.arrays import Array, Ints, Plane
+from gearcam.numeric.arrays import Array, Ints, Plane, in_groups
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.hermite import on_cubics
 
@@ -159,8 +159,7 @@ def _slot(points: Plane, tangents: Plane, ends: Ints) -> tuple[float, complex | 
     length = np.diff(way[first], append=way[-1])
     step = way[-1] / max(_LEAST, _PER_RUN * len(length))
     counts = np.ceil(length / step).astype(int)
-    number = np.repeat(np.arange(len(counts)), counts + 1)
-    place = np.arange(len(number)) - np.repeat(np.cumsum(counts + 1) - counts - 1, counts + 1)
+    number, place = in_groups(counts + 1)
     share = np.where(place < counts[number], place * (1.0 / counts)[number], 1.0)
     along = way[first[number]] + share * length[number]
     best, pair = _narrowest(*at(number, along))
@@ -216,9 +215,8 @@ def _in_discs(p: Plane, centers: Plane, radius: float) -> Iterator[tuple[Ints, I
     counts = last - first
     cuts = np.searchsorted(np.cumsum(counts), np.arange(_BLOCK, counts.sum(), _BLOCK))
     for k in np.split(np.arange(len(counts)), cuts):
-        disc = np.repeat(k // 3, counts[k])
-        shift = first[k] - np.cumsum(counts[k]) + counts[k]
-        inner = order[np.arange(len(disc)) + np.repeat(shift, counts[k])]
+        row, place = in_groups(counts[k])
+        disc, inner = k[row] // 3, order[first[k][row] + place]
         gap = p[inner] - centers[disc]
         inside = gap.real**2 + gap.imag**2 <= radius**2
         yield disc[inside], inner[inside]

@@ -88,15 +88,15 @@ def labelled(
 def _beside(text: str, at: complex, size: float, gap: float) -> list[tuple[int, Label]]:
     """Return labels around a place and the numbers of their rings."""
     low, high = Label(text, 0j, size).corners
-    half, found = 0.5 * (high - low), []
+    half, choices = 0.5 * (high - low), []
     for ring, far in enumerate(_RINGS):
         for k in range(_AROUND):
             angle = math.tau * (k + 1.5) / _AROUND
             x, y = math.cos(angle), math.sin(angle)
             # the box touches a circle around the place
             reach = gap * far + min(half.real / max(abs(x), 1e-9), half.imag / max(abs(y), 1e-9))
-            found.append((ring, Label(text, at + reach * complex(x, y), size)))
-    return found
+            choices.append((ring, Label(text, at + reach * complex(x, y), size)))
+    return choices
 
 
 def _cost(label: Label, lines: Plane, others: Sequence[Label]) -> float:

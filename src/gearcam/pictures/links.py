@@ -13,7 +13,6 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.numeric.arrays import Plane
 from gearcam.parts.shapes import Circle
 from gearcam.pictures.drawings import BORE, GROUND, MEMBER, Feature, Path
 
@@ -121,7 +120,8 @@ def hatched(first: complex, last: complex, half: float) -> tuple[Feature, ...]:
     feet = first + way * (np.arange(count) + 0.7) / count
     slanted = size * ahead * complex(-0.7, -0.7)
     lines = [np.array([first, last]), *(np.array([foot, foot + slanted]) for foot in feet)]
-    return tuple(_ground(points) for points in lines)
+    paths = (Path(points=points, closed=False) for points in lines)
+    return tuple(Feature(layer=GROUND, shape=path) for path in paths)
 
 
 def pivot(at: complex, half: float) -> tuple[Feature, ...]:
@@ -142,7 +142,3 @@ def pivot(at: complex, half: float) -> tuple[Feature, ...]:
     foot = Path(points=np.array([at, low, high]))
     wide = 0.8 * half
     return Feature(layer=GROUND, shape=foot), *hatched(low - wide, high + wide, half)
-
-
-def _ground(points: Plane) -> Feature:
-    return Feature(layer=GROUND, shape=Path(points=points, closed=False))

@@ -24,7 +24,8 @@ from gearcam.numeric.arguments import whole
 from gearcam.pictures.charts import Chart, Line
 from gearcam.results.kind import KINDS
 from gearcam.results.ladders import Ladder
-from gearcam.results.result import Progress, Result
+from gearcam.results.result import Result
+from gearcam.results.study import Progress, silent
 
 REPEATS: Final = 5
 """Default number of runs of each level."""
@@ -261,8 +262,8 @@ def accuracy(
     2.0
     """
     count, names = whole("repeat", repeat, 1), stages_of(result.design, stages)
+    tell = progress or silent
     makers = result.kind.ladders
-    first: dict[tuple[str, float], tuple[float, int]] = {}
     refused: dict[tuple[str, float], str] = {}
     ladders: dict[str, Ladder] = {}
     for name in names:
@@ -273,67 +274,69 @@ def accuracy(
                 raise
             refused[name, math.nan] = str(error)
     total, done = (count + 1) * len(ladders), itertools.count()
+    first: dict[str, dict[float, tuple[float, int]]] = {}
     for name, ladder in ladders.items():
-        if progress is not None:
-            progress(name, next(done), total)
-        _first_round(name, ladder, first, refused)
-    samples: dict[tuple[str, float], list[float]] = {rung: [] for rung in first}
+        tell(name, next(done), total)
+        first[name] = _first_round(name, ladder, refused)
+    samples = {name: {level: list[float]() for level in levels} for name, levels in first.items()}
     for number in range(count):
         for name, ladder in ladders.items():
-            if progress is not None:
-                progress(name, next(done), total)
-            levels = [level for whose, level in first if whose == name]
+            tell(name, next(done), total)
+            levels = [*first[name]]
             # rotate the levels: the first one meets cold caches
             cut = number % len(levels)
             for level in levels[cut:] + levels[:cut]:
                 start = time.perf_counter()
                 ladder.make(level)
-                samples[name, level].append(time.perf_counter() - start)
+                samples[name][level].append(time.perf_counter() - start)
     return Accuracy(
         result=result,
         ladders=ladders,
-        rungs=tuple(_rungs(ladders, first, samples)),
+        rungs=tuple(
+            rung
+            for name, ladder in ladders.items()
+            for rung in _rungs(name, ladder, first[name], samples[name])
+        ),
         refused=refused,
         repeat=count,
     )
 
 
 def _first_round(
-    name: str,
-    ladder: Ladder,
-    first: dict[tuple[str, float], tuple[float, int]],
-    refused: dict[tuple[str, float], str],
-) -> None:
-    """Compute and measure every level of a ladder once; record those that fail in `refused`."""
-    reason: GearcamError | None = None
+    name: str, ladder: Ladder, refused: dict[tuple[str, float], str]
+) -> dict[float, tuple[float, int]]:
+    """Return error and points of every level of a ladder; record those that fail in `refused`."""
+    found, reason = dict[float, tuple[float, int]](), None
     for level in ladder.levels:
         try:
-            first[name, level] = ladder.measure(ladder.make(level))
+            found[level] = ladder.measure(ladder.make(level))
         except GearcamError as error:
             refused[name, level], reason = str(error), error
-    if reason is not None and not any(whose == name for whose, _ in first):
+    if reason is not None and not found:
         raise reason
+    return found
 
 
 def _rungs(
-    ladders: Mapping[str, Ladder],
-    first: Mapping[tuple[str, float], tuple[float, int]],
-    samples: Mapping[tuple[str, float], Sequence[float]],
+    name: str,
+    ladder: Ladder,
+    found: Mapping[float, tuple[float, int]],
+    samples: Mapping[float, Sequence[float]],
 ) -> Iterator[Rung]:
-    before: dict[str, tuple[float, int]] = {}
-    for (name, level), (error, points) in first.items():
-        ladder = ladders[name]
-        last, order = before.get(name), None
-        if last and points > last[1] and min(error, last[0]) > ladder.rounding:
-            order = math.log(last[0] / error) / math.log(points / last[1])
-        before[name] = error, points
+    """Yield the rungs of a ladder, from errors and points, and run times, by level."""
+    before: tuple[float, int] | None = None
+    for level, (error, points) in found.items():
+        order = None
+        if before and points > before[1] and min(error, before[0]) > ladder.rounding:
+            order = math.log(before[0] / error) / math.log(points / before[1])
+        before = error, points
         yield Rung(
             stage=name,
             level=level,
             own=level == ladder.own,
             error=error,
             order=order,
-            seconds=statistics.median(samples[name, level]),
+            seconds=statistics.median(samples[level]),
             points=points,
         )
 

@@ -11,8 +11,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final, cast
 
+from gearcam.base.brought import group_of
 from gearcam.base.facts import Facts
-from gearcam.base.registry import deferred
+from gearcam.base.registry import OpenMapping, deferred
 from gearcam.designs import kind as reading
 from gearcam.designs.kind import DesignKind
 
@@ -21,7 +22,10 @@ if TYPE_CHECKING:
     from gearcam.pictures.charts import Chart
     from gearcam.pictures.scenes import Scene
 
-FileMaker = Callable[[Any, dict[str, Any]], dict[str, bytes]]
+Files = dict[str, bytes]
+"""Contents by file name."""
+
+FileMaker = Callable[[Any, dict[str, Any]], Files]
 """``maker(result, measured)`` returns contents by file name, and adds groups of facts measured on
 them to `measured`. Paragraphs of its docstring list the names of the files (``Files: ...``) and say
 what they hold."""
@@ -58,8 +62,9 @@ class Study:
     table : str
         Title of the table of its settings in a design; the command has an option for each key.
     compute : callable
-        ``compute(result, progress)`` returns its outcome, a `StudyResult`; the settings are those
-        of the design.
+        ``compute(result, progress)`` tells of its `progress` and returns its outcome, a
+        `StudyResult`; the settings are those of the design, but for those that a method of its
+        results gives by name.
     options : mapping of str to str
         Names of options that differ from those of their keys.
     argument : str
@@ -72,6 +77,9 @@ class Study:
         Codes of findings of the design that the study gives anew.
     many : bool
         Whether its command takes several design files.
+    settings : type, optional
+        The class of that table: of a study of another package, whose table has the study's name.
+        Else a field of the design says it.
     """
 
     name: str
@@ -79,16 +87,22 @@ class Study:
     doc: str
     done: str
     table: str
-    compute: Callable[[Any, Any], Any]
+    compute: Callable[..., Any]
     options: Mapping[str, str] = field(default_factory=dict)
     argument: str = ""
     metavar: str = ""
     demand: Callable[[Design], None] = _anything
     repeats: tuple[str, ...] = ()
     many: bool = True
+    settings: type | None = None
 
     def __repr__(self) -> str:
         return f'<Study "{self.name}">'
+
+
+def studies_of(kind: str, *studies: Study) -> OpenMapping[Study]:
+    """Return the studies of a `kind` of design by name, to which packages may add."""
+    return OpenMapping({one.name: one for one in studies}, group_of(kind, "studies"))
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -122,7 +136,7 @@ class Kind(DesignKind):
     charts: Mapping[str, ChartMaker] = field(default_factory=dict)
     scene: Callable[[Any, int], Scene | None] = lambda *_: None
     advice: Callable[[], Any] = _PLAIN_ADVICE
-    studies: Mapping[str, Study] = field(default_factory=dict)
+    studies: OpenMapping[Study] = field(default_factory=OpenMapping)
     ladders: Mapping[str, Callable[[Any], Any]] = field(default_factory=dict)
     public: Mapping[str, type] = field(default_factory=dict)
     cut: bool = True

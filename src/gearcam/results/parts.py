@@ -9,20 +9,18 @@ from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 
 from gearcam.designs.outputs import MESHES
+from gearcam.results.kind import Files
 from gearcam.results.result import Result
 
 if TYPE_CHECKING:
     from trimesh import Trimesh
 
     from gearcam.export.dxf import DxfStyle
+    from gearcam.numeric.mesh import Mesh
     from gearcam.numeric.pose import Pose, SpacePose
     from gearcam.parts.body import Part
-    from gearcam.parts.solids import Mesh
     from gearcam.pictures.drawings import Drawing
     from gearcam.sheets.sheet import Sheet
-
-Files = dict[str, bytes]
-"""Contents by file name."""
 
 Measured = dict[str, Any]
 """Facts measured on files, by group."""

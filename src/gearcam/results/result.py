@@ -7,66 +7,56 @@ that the requested files need are imported.
 
 from __future__ import annotations
 
-import sys
-import time
-from abc import abstractmethod
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 
-from numpy.typing import ArrayLike
-
-from gearcam.base.display import NotebookView, cut, renderer
-from gearcam.base.errors import GearcamError, InfeasibleError
-from gearcam.base.facts import Fact, Facts
-from gearcam.base.findings import Finding, in_order
-from gearcam.base.numerals import tree
-from gearcam.base.pickling import pickled
+from gearcam.base.display import renderer
+from gearcam.base.errors import GearcamError
+from gearcam.base.facts import Facts
+from gearcam.base.findings import Finding
 from gearcam.base.registry import deferred
 from gearcam.base.tolerances import DEFAULT, Tolerances
-from gearcam.designs.design import hash_of, summary_of
 from gearcam.numeric.arguments import one_of, refused
-from gearcam.numeric.columns import Columns
 from gearcam.results.goals import demand_facts, goals_of
-from gearcam.results.kind import Kind, Study, kind_of
-from gearcam.results.written import BuildOutput, demand_formats, versions
+from gearcam.results.staged import Staged
+from gearcam.results.study import Progress, StudyResult, merged, silent
+from gearcam.results.written import BuildOutput, demand_formats
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from gearcam.laws.columns import Given
+    from gearcam.numeric.mesh import Mesh
     from gearcam.numeric.pose import SpacePose
-    from gearcam.parts.solids import Mesh
     from gearcam.pictures.charts import Chart
-    from gearcam.pictures.scenes import ContactPoints, Scene
-
-FORMAT: Final = 1
-"""Version of the layout of ``summary.json``."""
+    from gearcam.pictures.scenes import Scene
 
 PICTURE: Final = "svg"
 """The format that shows the design as a picture."""
 REPORT: Final = "report"
 """The format that describes the other files and is written last."""
 
-Progress = Callable[[str, int, int], None]
-"""Called with the name of the next stage, the number of stages done and their total."""
-
-
 _framed = deferred("gearcam.report.file:framed")
 """Returns the page of a result for a notebook; named like the renderer of `gearcam.base.display`,
 since the report is made from results."""
 
 _OF_STUDIES: Final = (
-    "_studied", "_running", "_drawn", "design_facts", "facts", "findings", "design_hash", "sought",
+    "_studied",
+    "_running",
+    "_drawn",
+    "design_facts",
+    "facts",
+    "findings",
+    "design_hash",
+    "sought",
     "sizes",
-)  # fmt: skip
+)
 """What a result with other studies computes anew."""
 
 
-class Result(NotebookView):
+class Result(Staged):
     """The result of a design, computed on demand.
 
     Parameters
@@ -89,65 +79,22 @@ class Result(NotebookView):
     """The stages that studies need, computed once for all settings of a study."""
 
     def __init__(self, design: Any, tolerances: Tolerances = DEFAULT) -> None:
-        self.design = design
-        self.tolerances = tolerances
-        self.timings: dict[str, float] = {}
+        super().__init__(design, tolerances)
         self.sizes: dict[str, int] = {}  # bytes of the files built so far
         self._studied: dict[str, StudyResult] = {}
         self._drawn: dict[str, Chart | None] = {}
         self._running: set[str] = set()  # studies that are being computed
         self.sought: dict[float, Any] = {}  # remedies found, by the patience of the search
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (self.design, self.tolerances)  # the copy computes anew
-
-    def __repr__(self) -> str:
-        done = ", ".join(self.timings) or "nothing"
-        return cut(f'<{type(self).__name__} of "{self.design.name}", computed: {done}>')
-
-    def with_chords(self, tolerance: float) -> Self:  # noqa: ARG002
-        """Return the result with another chord `tolerance`, mm; the same without outlines."""
-        return self
-
-    @property
-    def kind(self) -> Kind:
-        """The kind of the design."""
-        return kind_of(self.design)
-
-    @contextmanager
-    def stage(self, name: str) -> Iterator[None]:
-        """Add the time spent inside the context to the stage called `name`."""
-        start = time.perf_counter()
-        yield
-        self.timings[name] = self.timings.get(name, 0.0) + time.perf_counter() - start
-
-    @cached_property
-    @abstractmethod
-    def checked(self) -> tuple[Finding, ...]:
-        """The findings of the checks of the design, errors first."""
-
-    @cached_property
-    def checked_without_hints(self) -> tuple[Finding, ...]:
-        """The same findings; their messages need not name values that help.
-
-        For searches, which look at codes and numbers only: values that help are searched for, and
-        take longer than the checks.
-        """
-        return self.checked
-
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
         """The findings of all checks and of the studies that the design asks for, errors first."""
-        return self.findings_with(self.studies.values())
+        return merged(self.checked, self.studies.values())
 
     @property
     def findings_without_hints(self) -> tuple[Finding, ...]:
         """The same findings; those of checks need not name values that help."""
-        return _merged(self.checked_without_hints, self.studies.values())
-
-    def findings_with(self, studies: Collection[StudyResult]) -> tuple[Finding, ...]:
-        """Return the findings of `studies`, and of the design what they do not repeat, in order."""
-        return _merged(self.checked, studies)
+        return merged(self.checked_without_hints, self.studies.values())
 
     @property
     def studies(self) -> dict[str, StudyResult]:
@@ -179,13 +126,13 @@ class Result(NotebookView):
         InfeasibleError
             If the design, or its study, is impossible.
         """
-        entry = self.kind.studies[one_of("name", name, (*self.kind.studies,))]
+        entry = self.kind.studies[one_of("name", name, self.kind.studies)]
         outcome = self._studied.get(name)
         if outcome is None or outcome.interrupted:
             entry.demand(self.design)
             self._running.add(name)
             try:
-                outcome = self._studied[name] = entry.compute(self, progress)
+                outcome = self._studied[name] = entry.compute(self, progress or silent)
             finally:
                 self._running.discard(name)
         return outcome
@@ -252,65 +199,11 @@ class Result(NotebookView):
         return renderer().page(self.picture(), facts, lines)
 
     @cached_property
-    def design_hash(self) -> str:
-        """The hash of the design, with the contents of its CSV files as first read."""
-        return hash_of(self.design)
-
-    @cached_property
     def facts(self) -> Facts:
         """All computed quantities by dotted names (see docs/summary.md)."""
         return self.design_facts.with_groups(
             {one.study.key: one.group for one in self.studies.values()}
         )
-
-    @cached_property
-    def design_facts(self) -> Facts:
-        """The facts without those of studies."""
-        files = [table.rows for table in self._tables if table.rows is not None]
-        notes = [Fact(rows.note, Path(rows.file).name, shown=True) for rows in files]
-        tables = [{"note": note} for note in notes if note.value]
-        return self.kind.facts(self).with_groups({"tables": tables})
-
-    @property
-    def _tables(self) -> Sequence[Any]:
-        """The tables of the design that are, or may be, files."""
-        columns = sys.modules.get("gearcam.laws.columns")  # loaded if a design has a table
-        return [*columns.tables_in(self.design)] if columns else []
-
-    @property
-    def given_rows(self) -> list[tuple[str, Given]]:
-        """The rows of tables that should lie on curves, with the keys of what they belong to."""
-        return self._given_rows(oscillating=False)
-
-    def _given_rows(self, *, oscillating: bool) -> list[tuple[str, Given]]:
-        """Return the same where lifts are angles, or mm."""
-        if all(table.given(oscillating=oscillating) is None for table in self._tables):
-            return []
-        from gearcam.laws.row_checks import given_in
-
-        return [*given_in(self.design, oscillating=oscillating)]
-
-    @property
-    def row_findings(self) -> tuple[Finding, ...]:
-        """The findings of the rows of all tables of the design."""
-        if not (tables := self.given_rows):
-            return ()
-        from gearcam.laws.row_checks import row_findings
-
-        return row_findings(tables)
-
-    @contextmanager
-    def naming_rows(self) -> Iterator[None]:
-        """Name a stray row of a table in the place of a refusal."""
-        try:
-            yield
-        except InfeasibleError as error:
-            from gearcam.laws.row_checks import refused_for_row
-
-            named = refused_for_row(self.given_rows, error)
-            if named is None or named.where == error.where:  # which names it already
-                raise
-            raise named from error
 
     def standing(
         self,
@@ -336,14 +229,6 @@ class Result(NotebookView):
             Chord error of the outlines, if that of the design is smaller.
         """
         return {name: mesh.placed(pose) for name, (mesh, pose) in self.standing(chords).items()}
-
-    @property
-    def main_errors(self) -> Sequence[tuple[str, Sequence[str]]]:
-        """Errors that users act on: label, and names of facts of ``accuracy``.
-
-        Of several facts the largest counts.
-        """
-        return ()
 
     def record(self) -> dict[str, float | str]:
         """Return the result as one flat row of a table: plain numbers and texts, no lists, no None.
@@ -376,39 +261,7 @@ class Result(NotebookView):
         Facts, findings, design and versions as plain values, in the units of their names. Raises
         `InfeasibleError` if the design cannot be made.
         """
-        return self.document(self.facts, self.findings)
-
-    def document(
-        self, facts: Facts, findings: Sequence[Finding], files: Mapping[str, Any] | None = None
-    ) -> dict[str, Any]:
-        """Return a summary.
-
-        Parameters
-        ----------
-        facts, findings
-            As of a result or a study.
-        files : mapping, optional
-            Entries about files.
-
-        Returns
-        -------
-        dict
-            Plain values for JSON.
-        """
-        return tree(
-            {
-                "format": FORMAT,
-                "name": self.design.name,
-                "kind": self.design.kind,
-                **facts.document,
-                "hash": self.design_hash,
-                **(files or {}),
-                "findings": [finding.as_dict() for finding in findings],
-                "timings_s": {name: round(value, 6) for name, value in self.timings.items()},
-                "versions": versions(),
-                "design": summary_of(self.design),
-            }
-        )
+        return self.summary(self.facts, self.findings).document()
 
     def files(self, name: str, measured: dict[str, Any] | None = None) -> dict[str, bytes]:
         """Return the files of one format.
@@ -433,7 +286,7 @@ class Result(NotebookView):
             If the design cannot be made.
         """
         demand_formats(self.design, (name,))
-        with self.naming_rows():
+        with self.rows.named():
             return self.kind.files[name](self, {} if measured is None else measured)
 
     @property
@@ -551,7 +404,7 @@ class Result(NotebookView):
             With the summary as its only file.
         """
         self.demand_goals()
-        return self.put(directory, {}, self.facts, self.findings, keep=True)
+        return self.summary(self.facts, self.findings).write(directory, {}, keep=True)
 
     def write(
         self,
@@ -589,8 +442,8 @@ class Result(NotebookView):
         steps = [*self.stages, *studies, *formats, "writing"]
 
         def tell(step: str, *_: int) -> None:
-            if progress is not None and step in steps:
-                progress(step, steps.index(step), len(steps))
+            if step in steps:
+                (progress or silent)(step, steps.index(step), len(steps))
 
         for step, attribute in self.stages.items():
             tell(step)
@@ -612,7 +465,7 @@ class Result(NotebookView):
         contents |= self.more_files
         tell("writing")
         facts = self.facts.with_groups(measured)
-        return self.put(directory, contents, facts, self.findings, keep=False)
+        return self.summary(facts, self.findings).write(directory, contents, keep=False)
 
     def demand_goals(self) -> None:
         """Refuse goals of the design that are no numbers among its facts (`DesignError`)."""
@@ -624,186 +477,3 @@ class Result(NotebookView):
     def more_files(self) -> dict[str, bytes]:
         """Contents of files, by name, that are written with any format."""
         return {}
-
-    def put(
-        self,
-        directory: str | Path,
-        contents: Mapping[str, bytes],
-        facts: Facts,
-        findings: Sequence[Finding],
-        *,
-        keep: bool,
-    ) -> BuildOutput:
-        """Write files and the summary, all or none.
-
-        Parameters
-        ----------
-        directory : path
-            Parent folder.
-        contents : mapping of str to bytes
-            The files by name.
-        facts, findings
-            For the summary.
-        keep : bool
-            Whether the other files of an earlier build are kept.
-
-        Returns
-        -------
-        BuildOutput
-        """
-        import json
-
-        from gearcam.export.listing import planned
-        from gearcam.export.write import SUMMARY, writing
-
-        folder = Path(directory) / self.design.name
-        with writing(directory, self.design.name) as replace_files:
-            plan = planned(folder, contents, self.design_hash, keep=keep)
-            summary = self.document(facts, findings, plan.about)
-            text = json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False)
-            files = {**contents, SUMMARY: (text + "\n").encode()}
-            replace_files(files, plan.removed, plan.renamed)
-        return BuildOutput(
-            directory=folder,
-            files=tuple(files),
-            removed=plan.removed,
-            kept=plan.kept,
-            former={name: before for before, name in plan.renamed.items()},
-            summary=summary,
-            facts=facts,
-            findings=tuple(findings),
-        )
-
-
-def _merged(checked: Sequence[Finding], studies: Collection[StudyResult]) -> tuple[Finding, ...]:
-    """Return the findings of studies, and of the checks those that they do not repeat, in order."""
-    repeated = {code for one in studies for code in one.study.repeats}
-    kept = (one for one in checked if one.code not in repeated)
-    return in_order((*kept, *(finding for one in studies for finding in one.study_findings)))
-
-
-def _nothing(_: Scene) -> dict[str, ContactPoints]:
-    return {}
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class StudyResult(NotebookView):
-    """The outcome of a study of a result.
-
-    Parameters
-    ----------
-    result : Result
-        The result studied.
-    study : Study
-        The study.
-    file : str
-        Name of the CSV file for the table.
-    table : mapping of str to (n,) array
-        Columns by name, with the unit at the end of the name.
-    group : mapping
-        Its facts.
-    study_findings : tuple of Finding
-        Its findings.
-    drawn : callable
-        ``drawn()`` returns its `charts`; called when they are first read.
-    overlay : callable
-        ``overlay(scene)`` returns points of contact for the moving picture, by name.
-    pages : mapping of str to bytes
-        Files beside the table, by name.
-    lines : tuple of str
-        Lines to print in place of its facts.
-    interrupted : str
-        How much was done when it was interrupted: ``125 of 1000 steps``; empty if it is complete.
-
-    Examples
-    --------
-    >>> import gearcam as gc
-    >>> study = gc.build(gc.load("profiles/ellipse.toml")).mesh(steps=4)
-    >>> study.columns["phi1_deg"][:3], study.complete
-    (array([ 0.,  0., 90.]), True)
-    """
-
-    result: Result
-    study: Study
-    file: str
-    table: Mapping[str, ArrayLike]
-    group: Mapping[str, Any]
-    study_findings: tuple[Finding, ...] = ()
-    drawn: Callable[[], Mapping[str, Chart]] = dict
-    overlay: Callable[[Scene], Mapping[str, ContactPoints]] = _nothing
-    pages: Mapping[str, bytes] = field(default_factory=dict)
-    lines: tuple[str, ...] = ()
-    interrupted: str = ""
-
-    @property
-    def complete(self) -> bool:
-        """Whether it was not interrupted."""
-        return not self.interrupted
-
-    def __repr__(self) -> str:
-        rows = len(next(iter(self.columns.values()), ()))
-        state = "" if self.complete else " (interrupted)"
-        return cut(
-            f'<StudyResult{state}: {rows} rows, as in {self.file}, of "{self.result.design.name}">'
-        )
-
-    @cached_property
-    def charts(self) -> Mapping[str, Chart]:
-        """Its charts by name."""
-        return self.drawn()
-
-    def __getstate__(self) -> dict[str, Any]:
-        # what charts are drawn from need not be picklable
-        return pickled({**vars(self), "charts": self.charts, "drawn": dict})
-
-    @cached_property
-    def columns(self) -> Columns:
-        """The table with the columns of the CSV file; missing values are NaN."""
-        return Columns(self.table)
-
-    @cached_property
-    def facts(self) -> Facts:
-        """The facts of the result and of the study (see docs/summary.md)."""
-        return self.result.design_facts.with_groups({self.study.key: self.group})
-
-    @cached_property
-    def findings(self) -> tuple[Finding, ...]:
-        """Findings of the study, and those of the design that it does not repeat; errors first."""
-        return self.result.findings_with((self,))
-
-    def picture(self) -> str:
-        """Return an empty text: a study has no picture."""
-        return ""
-
-    @property
-    def files(self) -> dict[str, bytes]:
-        """Its files: the table and its pages, by name."""
-        from gearcam.export.table import table_bytes
-
-        return {self.file: table_bytes(self.table), **self.pages}
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the content of ``summary.json`` without files (see `Result.to_dict`)."""
-        return self.result.document(self.facts, self.findings)
-
-    def write(self, directory: str | Path = "output") -> BuildOutput:
-        """Write its files and the summary; the files of a build are kept.
-
-        Parameters
-        ----------
-        directory : path
-            Parent folder.
-
-        Returns
-        -------
-        BuildOutput
-            With the files and the summary.
-
-        Raises
-        ------
-        WriteError
-            If a file cannot be written.
-        """
-        written = self.result.put(directory, self.files, self.facts, self.findings, keep=True)
-        lines = self.lines or tuple(self.facts.lines(f"{self.study.key}."))
-        return replace(written, table=lines, interrupted=self.interrupted)

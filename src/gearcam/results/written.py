@@ -1,21 +1,26 @@
-"""What a command has written, and the requested formats."""
+"""The summary of a result, what a command has written with it, and the requested formats."""
 
 from __future__ import annotations
 
+import json
 import platform
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import DesignError, Problem
 from gearcam.base.facts import Facts
 from gearcam.base.findings import Finding
-from gearcam.designs.design import Design
+from gearcam.base.numerals import tree
+from gearcam.designs.design import Design, summary_of
 from gearcam.designs.kind import KINDS, as_written
 from gearcam.version import __version__
+
+FORMAT: Final = 1
+"""Version of the layout of ``summary.json``."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,6 +63,90 @@ class BuildOutput(ShortRepr):
     former: Mapping[str, str] = field(default_factory=dict)
     interrupted: str = ""
     table: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Summary:
+    """What ``summary.json`` says of a result or a study.
+
+    Parameters
+    ----------
+    design : Design
+        The design.
+    design_hash : str
+        Its hash.
+    facts, findings
+        Of the result or the study.
+    timings : mapping of str to float, s
+        Run times by stage.
+    """
+
+    design: Design
+    design_hash: str
+    facts: Facts
+    findings: tuple[Finding, ...]
+    timings: Mapping[str, float]
+
+    def document(self, files: Mapping[str, Any] | None = None) -> dict[str, Any]:
+        """Return it as plain values for JSON, with entries about `files`."""
+        return tree(
+            {
+                "format": FORMAT,
+                "name": self.design.name,
+                "kind": self.design.kind,
+                **self.facts.document,
+                "hash": self.design_hash,
+                **(files or {}),
+                "findings": [finding.as_dict() for finding in self.findings],
+                "timings_s": {name: round(value, 6) for name, value in self.timings.items()},
+                "versions": versions(),
+                "design": summary_of(self.design),
+            }
+        )
+
+    def write(
+        self, directory: str | Path, contents: Mapping[str, bytes], *, keep: bool
+    ) -> BuildOutput:
+        """Write files and the summary, all or none.
+
+        Parameters
+        ----------
+        directory : path
+            Parent folder.
+        contents : mapping of str to bytes
+            The files by name.
+        keep : bool
+            Whether the other files of an earlier build are kept.
+
+        Returns
+        -------
+        BuildOutput
+
+        Raises
+        ------
+        WriteError
+            If a file cannot be written.
+        """
+        from gearcam.export.listing import planned
+        from gearcam.export.write import SUMMARY, writing
+
+        folder = Path(directory) / self.design.name
+        with writing(directory, self.design.name) as replace_files:
+            plan = planned(folder, contents, self.design_hash, keep=keep)
+            summary = self.document(plan.about)
+            text = json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False)
+            files = {**contents, SUMMARY: (text + "\n").encode()}
+            replace_files(files, plan.removed, plan.renamed)
+        return BuildOutput(
+            directory=folder,
+            files=tuple(files),
+            removed=plan.removed,
+            kept=plan.kept,
+            former={name: before for before, name in plan.renamed.items()},
+            summary=summary,
+            facts=self.facts,
+            findings=self.findings,
+        )
 
 
 def demand_formats(design: Design, formats: Sequence[str] | None) -> tuple[str, ...]:

@@ -16,7 +16,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.numerals import decimal
-from gearcam.numeric.arrays import Array, Ints, Mask, Plane, as_pairs
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane, as_pairs, lengths_along
 from gearcam.pictures.drawings import Feature, Path, Shape, chains
 from gearcam.sheets.sheet import (
     ARROW_ROOM,
@@ -68,7 +68,7 @@ AROUND: Final = np.radians(np.arange(7.5, 367.5, 7.5))
 def _resampled(points: Plane, step: float, closed: bool) -> Plane:
     """Return points at most `step` apart along a chain, complex, mm."""
     chain = np.append(points, points[:1]) if closed else points
-    ways = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(chain)))])
+    ways = lengths_along(chain)
     count = max(2, math.ceil(ways[-1] / step) + 1)
     return np.interp(np.linspace(0.0, ways[-1], count), ways, chain)
 
@@ -182,10 +182,14 @@ class Board:
         line = complex(at, low) if vertical else complex(low, at)
         self._measure(
             LinearDimension(
-                first=first, second=second, line=line, place=place, vertical=vertical,
+                first=first,
+                second=second,
+                line=line,
+                place=place,
+                vertical=vertical,
                 prefix=prefix,
             )
-        )  # fmt: skip
+        )
 
     def round(self, dimension: RoundDimension, angles: Array | None = None) -> bool:
         """Draw a diameter or radius where there is space.

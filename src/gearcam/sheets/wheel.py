@@ -325,17 +325,17 @@ def _holes(board: Board, part: Part) -> None:
         RoundDimension(center=one.center, radius=0.5 * one.diameter, prefix=f"H{k} ")
         for k, one in enumerate(singles, start=1)
     ]
-    for one in named:
-        inside = 2.0 * one.radius * board.scale > text_width(one.label) + TIGHT
+    for hole in named:
+        inside = 2.0 * hole.radius * board.scale > text_width(hole.label) + TIGHT
         gap = (-CLEAR - GAP, HEIGHT + GAP + 2.0 * CLEAR) if inside else None
-        board.centre(one.center, one.radius, gap)
-    for one in sorted(named, key=lambda one: -one.radius):
-        board.round(one)
+        board.centre(hole.center, hole.radius, gap)
+    for hole in sorted(named, key=lambda one: -one.radius):
+        board.round(hole)
     for group in patterns:
         _pattern(board, group)
-    for one in named:
-        place = f"X {decimal(one.center.real)}  Y {decimal(one.center.imag)}"
-        board.rows.append((one.label, place))
+    for hole in named:
+        place = f"X {decimal(hole.center.real)}  Y {decimal(hole.center.imag)}"
+        board.rows.append((hole.label, place))
 
 
 def _even(circles: list[Circle]) -> bool:

@@ -12,10 +12,10 @@ import numpy as np
 
 from gearcam.laws.phases_of_lift import TURN
 from gearcam.numeric.arrays import Array
+from gearcam.numeric.mesh import Mesh
 from gearcam.spatial.globoidal import GloboidalCam
 from gearcam.spatial.globoidal_surface import MARGIN, blank_surface, rib_angles
 from gearcam.spatial.hulls import RollerHulls, left_between, round_hulls
-from gearcam.spatial.surface import Surface
 
 _AROUND: Final = 64
 """Points all around the roller: near a line of contact their chords are closer than a scallop."""
@@ -36,7 +36,7 @@ def roller_corners(cam: GloboidalCam, steps: int, places: int) -> Array:
     return _hulls(cam, rib_angles(cam, steps), steps, places).corners
 
 
-def uncut_surface(cam: GloboidalCam, steps: int) -> Surface:
+def uncut_surface(cam: GloboidalCam, steps: int) -> Mesh:
     """Return the surface of what the rollers cut: a little more than the cam, without a bore.
 
     Parameters
@@ -48,7 +48,7 @@ def uncut_surface(cam: GloboidalCam, steps: int) -> Surface:
 
     Returns
     -------
-    Surface
+    Mesh
     """
     margin = MARGIN * (cam.top - cam.half_length)
     return blank_surface(cam, 0.0, steps, margin)

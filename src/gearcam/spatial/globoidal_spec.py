@@ -82,7 +82,7 @@ class TurretSpec(ShortRepr):
 
     rules = (
         below("roller_length", "reach", why="the rollers would begin at the axis of the turret"),
-    )  # fmt: skip
+    )
 
     @property
     def hub(self) -> float:

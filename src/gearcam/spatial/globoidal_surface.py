@@ -20,8 +20,9 @@ import numpy as np
 
 from gearcam.laws.phases_of_lift import TURN
 from gearcam.numeric.arrays import Array, Ints
+from gearcam.numeric.mesh import Mesh
 from gearcam.spatial.globoidal import GloboidalCam
-from gearcam.spatial.surface import Surface, distances, revolved, welded
+from gearcam.spatial.surface import distances, revolved, welded
 
 _BEYOND: Final = 0.05
 """How far the rib goes on beyond top and floor, over the radius of a roller."""
@@ -45,7 +46,7 @@ _BODY: Final = 1.2
 """Half the thickness of the turret's body that is shown, over the radius of a roller."""
 
 
-def rib_surface(cam: GloboidalCam, steps: int, places: int) -> Surface:
+def rib_surface(cam: GloboidalCam, steps: int, places: int) -> Mesh:
     """Return the surface of the rib, a little beyond faces, top and floor.
 
     Parameters
@@ -59,7 +60,7 @@ def rib_surface(cam: GloboidalCam, steps: int, places: int) -> Surface:
 
     Returns
     -------
-    Surface
+    Mesh
     """
     theta, beyond = rib_angles(cam, steps), _BEYOND * cam.roller.radius
     # the rib is above the roller that is followed, and below the next one
@@ -113,7 +114,7 @@ def rib_angles(cam: GloboidalCam, steps: int) -> Array:
     return np.sort(np.concatenate([even, knots[within & ~near]]))
 
 
-def core_surface(cam: GloboidalCam, steps: int) -> Surface:
+def core_surface(cam: GloboidalCam, steps: int) -> Mesh:
     """Return the surface of the core without a bore, a little longer than the cam.
 
     Parameters
@@ -123,14 +124,14 @@ def core_surface(cam: GloboidalCam, steps: int) -> Surface:
 
     Returns
     -------
-    Surface
+    Mesh
     """
     longer = cam.half_length + _LONGER * (cam.floor - cam.half_length)
     outside = _arc(cam, cam.floor, longer, steps)
     return revolved([(0.0, -longer), (0.0, longer), *outside], steps)
 
 
-def blank_surface(cam: GloboidalCam, bore: float, steps: int, margin: float = 0.0) -> Surface:
+def blank_surface(cam: GloboidalCam, bore: float, steps: int, margin: float = 0.0) -> Mesh:
     """Return the surface of what the cam is made from: a globoid with a bore.
 
     Parameters
@@ -144,7 +145,7 @@ def blank_surface(cam: GloboidalCam, bore: float, steps: int, margin: float = 0.
 
     Returns
     -------
-    Surface
+    Mesh
     """
     half = cam.half_length + margin
     outside = _arc(cam, cam.top - margin, half, steps)
@@ -175,7 +176,7 @@ def chord_error(cam: GloboidalCam, steps: int, places: int) -> float:
     return worst
 
 
-def turret_surface(cam: GloboidalCam, hub: float, steps: int) -> Surface:
+def turret_surface(cam: GloboidalCam, hub: float, steps: int) -> Mesh:
     """Return the surfaces of the turret: its body, a disc, and its rollers.
 
     Parameters
@@ -189,7 +190,7 @@ def turret_surface(cam: GloboidalCam, hub: float, steps: int) -> Surface:
 
     Returns
     -------
-    Surface
+    Mesh
         In the frame of a roller: its axis is +x, that of the turret y.
     """
     radius = cam.roller.radius
@@ -204,7 +205,7 @@ def turret_surface(cam: GloboidalCam, hub: float, steps: int) -> Surface:
         c, s = math.cos(k * cam.pitch), math.sin(k * cam.pitch)
         faces.append(one.triangles + sum(map(len, parts)))
         parts.append(np.stack([c * x + s * z, y, c * z - s * x], axis=1))
-    return Surface(vertices=np.concatenate(parts), triangles=np.concatenate(faces))
+    return Mesh(vertices=np.concatenate(parts), triangles=np.concatenate(faces))
 
 
 def _arc(cam: GloboidalCam, radius: float, half: float, steps: int) -> list[tuple[float, float]]:

@@ -56,7 +56,7 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import ABOVE, InfeasibleError, beyond_limit
-from gearcam.numeric.arrays import Array, Ints, Mask
+from gearcam.numeric.arrays import Array, Ints, Mask, divided
 from gearcam.spatial.cam import SpatialCam
 from gearcam.spatial.tool import MillSpec
 
@@ -388,7 +388,9 @@ class _Mill:
         Errors: what is left on walls, what is cut into them, the distance from the path.
         """
         cam = self.cam
-        theta = _first_steps(cam.program.cuts_between(0.0, cam.program.period))
+        knots = cam.program.cuts_between(0.0, cam.program.period)
+        counts = np.maximum(1, np.ceil(np.diff(knots) / _WIDEST_STEP - _SAME)).astype(int)
+        theta = _rounded(divided(knots, counts))
         while True:
             placed = self._kept(theta, self.place(theta, lane, layer).round(DECIMALS[0]))
             between = theta[:-1, None] + np.diff(theta)[:, None] * _ALONG
@@ -464,13 +466,3 @@ def _turn(mill: _Mill, lane: Lane, layer: _Layer, tolerance: float) -> tuple[Arr
         turn[:, 1:] *= [-1.0, 1.0, -1.0]
         turn = _ahead(turn[::-1], theta[-1])
     return turn + 0.0, errors  # no minus zero
-
-
-def _first_steps(knots: Array) -> Array:
-    """Return angles that divide a turn evenly between knots."""
-    counts = np.maximum(1, np.ceil(np.diff(knots) / _WIDEST_STEP - _SAME)).astype(int)
-    parts = [
-        np.linspace(left, right, count, endpoint=False)
-        for (left, right), count in zip(pairwise(knots), counts, strict=True)
-    ]
-    return _rounded(np.append(np.concatenate(parts), knots[-1]))

@@ -77,9 +77,9 @@ def least_diameter(
     def made(diameter: float) -> SpatialCam:
         return make_cylinder(program, follower, replace(cam, outer_diameter=diameter), bore)
 
-    def steep(found: SpatialCam) -> bool:
-        worst = found.pressure()
-        return worst is not None and worst.value > checks.allowed_pressure(found, limits)
+    def steep(built: SpatialCam) -> bool:
+        worst = built.pressure()
+        return worst is not None and worst.value > checks.allowed_pressure(built, limits)
 
     reasons: dict[str, Callable[[SpatialCam], bool]] = {
         "pressure-angle": steep,
@@ -87,8 +87,8 @@ def least_diameter(
     }
 
     def reason(diameter: float) -> str:
-        found = made(diameter)
-        return next((code for code, broken in reasons.items() if broken(found)), "")
+        built = made(diameter)
+        return next((code for code, broken in reasons.items() if broken(built)), "")
 
     core = bore + max(wall, 1e-3 * cam.groove_depth)
     low = 2.0 * (cam.groove_depth + cam.floor_clearance + core)

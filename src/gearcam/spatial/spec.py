@@ -168,13 +168,18 @@ class CylinderSpec(ShortRepr):
         only_with(("rib",), "walls", "rib", why="is given, but the walls are {}"),
         needed_with(("rib",), "walls", "rib", why="is missing for a {}"),
         only_with(
-            ("roller_clearance",), "walls", "both", "rib",
+            ("roller_clearance",),
+            "walls",
+            "both",
+            "rib",
             why="the follower rests on the {} wall, without clearance",
         ),
         below(
-            "groove_depth", "outer_diameter", why="the groove would cut through the cylinder",
+            "groove_depth",
+            "outer_diameter",
+            why="the groove would cut through the cylinder",
         ),
-    )  # fmt: skip
+    )
 
     @property
     def clockwise(self) -> bool:

@@ -27,6 +27,7 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.numeric.arrays import Array, Ints, Mask
+from gearcam.numeric.mesh import Mesh
 from gearcam.spatial.cam import SpatialCam, SpatialWall
 
 _COINCIDENT: Final = 1e-9
@@ -55,23 +56,7 @@ class Cylinder(ShortRepr):
     bore: float = 0.0
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Surface(ShortRepr):
-    """A closed surface of triangles, counter-clockwise seen from outside.
-
-    Parameters
-    ----------
-    vertices : (n, 3) array, mm
-        Its points.
-    triangles : (m, 3) array of int
-        Indices of points.
-    """
-
-    vertices: Array
-    triangles: Ints
-
-
-def surface(cam: SpatialCam, blank: Cylinder, steps: int, places: int) -> Surface:
+def surface(cam: SpatialCam, blank: Cylinder, steps: int, places: int) -> Mesh:
     """Return the surface of a cam, as if it turned counter-clockwise.
 
     Parameters
@@ -87,13 +72,13 @@ def surface(cam: SpatialCam, blank: Cylinder, steps: int, places: int) -> Surfac
 
     Returns
     -------
-    Surface
+    Mesh
     """
     theta = np.linspace(0.0, 2.0 * math.pi, steps, endpoint=False)
     return _closed(list(_rings(cam, blank, theta, places)), cam.outer_radius)
 
 
-def blank_surface(cam: SpatialCam, blank: Cylinder, steps: int) -> Surface:
+def blank_surface(cam: SpatialCam, blank: Cylinder, steps: int) -> Mesh:
     """Return the surface of what a cam is made from.
 
     Parameters
@@ -103,14 +88,14 @@ def blank_surface(cam: SpatialCam, blank: Cylinder, steps: int) -> Surface:
 
     Returns
     -------
-    Surface
+    Mesh
     """
     outer, length = cam.outer_radius, blank.length
     corners = (blank.bore, 0.0), (blank.bore, length), (outer, length), (outer, 0.0)
     return revolved(corners, steps)
 
 
-def roller_surface(cam: SpatialCam, steps: int) -> Surface:
+def roller_surface(cam: SpatialCam, steps: int) -> Mesh:
     """Return the surface of the roller of a cam with the beginning of its pin outside the cam.
 
     Parameters
@@ -122,7 +107,7 @@ def roller_surface(cam: SpatialCam, steps: int) -> Surface:
 
     Returns
     -------
-    Surface
+    Mesh
         In the frame of the roller: its axis is +x.
     """
     inside, outside = cam.inner, cam.outer_radius
@@ -130,10 +115,10 @@ def roller_surface(cam: SpatialCam, steps: int) -> Surface:
     pin, end = _PIN * thick, outside + _STUB * thick
     profile = [(0.0, end), (pin, end), (pin, outside), (thick, outside), (thin, inside)]
     made = revolved((*profile, (0.0, inside)), steps)
-    return Surface(vertices=np.roll(made.vertices, 1, axis=1), triangles=made.triangles)
+    return Mesh(vertices=np.roll(made.vertices, 1, axis=1), triangles=made.triangles)
 
 
-def revolved(corners: Iterable[tuple[float, float]], steps: int) -> Surface:
+def revolved(corners: Iterable[tuple[float, float]], steps: int) -> Mesh:
     """Return the surface of a body of revolution about z.
 
     Parameters
@@ -145,7 +130,7 @@ def revolved(corners: Iterable[tuple[float, float]], steps: int) -> Surface:
 
     Returns
     -------
-    Surface
+    Mesh
     """
     theta = np.linspace(0.0, 2.0 * math.pi, steps, endpoint=False)
     outline = [*corners]
@@ -153,7 +138,7 @@ def revolved(corners: Iterable[tuple[float, float]], steps: int) -> Surface:
     return _closed([_circle(theta, *one) for one in outline], size)
 
 
-def _closed(rings: Sequence[_Ring], size: float) -> Surface:
+def _closed(rings: Sequence[_Ring], size: float) -> Mesh:
     """Return the surface through rings, each joined to the next, the last to the first.
 
     `size` is the radius of the cylinder, mm.
@@ -168,7 +153,7 @@ def _closed(rings: Sequence[_Ring], size: float) -> Surface:
     return welded(np.concatenate([ring.points for ring in rings]), np.concatenate(faces), size)
 
 
-def welded(vertices: Array, triangles: Ints, size: float) -> Surface:
+def welded(vertices: Array, triangles: Ints, size: float) -> Mesh:
     """Return a mesh in which points that coincide are one, such as those of a ramp in a dwell.
 
     Parameters
@@ -182,9 +167,7 @@ def welded(vertices: Array, triangles: Ints, size: float) -> Surface:
     """
     cells = np.round(vertices / (_COINCIDENT * size)).astype(np.int64)
     _, kept, index = np.unique(cells, axis=0, return_index=True, return_inverse=True)
-    a, b, c = index.ravel()[triangles].T
-    whole = (a != b) & (b != c) & (c != a)
-    return Surface(vertices=vertices[kept], triangles=np.stack([a, b, c], axis=1)[whole])
+    return Mesh(vertices=vertices, triangles=triangles).joined(index.ravel(), vertices[kept])
 
 
 def chord_error(cam: SpatialCam, steps: int, places: int) -> float:

@@ -26,13 +26,13 @@ from pathlib import Path
 from socket import gethostname
 from typing import Any, Final
 
-from gearcam.base.errors import DesignError, MissingExtraError, Problem
+from gearcam.base.errors import DesignError, MissingExtraError
 from gearcam.base.interrupts import unbroken
 from gearcam.designs.design import Design, design, document_of
 from gearcam.designs.reader import find_tables
-from gearcam.sweep.engine import MEMORY, SECONDS, Build, Engine, Job
+from gearcam.sweep.engine import Build, Engine, Job
 from gearcam.sweep.pool import Crew
-from gearcam.sweep.rows import Built, Measure, measured
+from gearcam.sweep.rows import Built
 
 _CHUNK_S: Final = 1.0
 """Time that a chunk should take, s: a task costs the scheduler about a millisecond."""
@@ -62,18 +62,12 @@ _KILLS: Final = "its worker ended twice while it was built alone"
 
 @dataclass(frozen=True, kw_only=True)
 class Cluster(Engine):
-    """The workers of a scheduler of dask.
+    """The workers of a scheduler of dask (see `Engine`); each thread of a worker has a process.
 
     Parameters
     ----------
     address : str
         Of the scheduler, such as ``tcp://host:8786``.
-    seconds : float, s
-        Largest time of a variant.
-    memory : int
-        Largest memory of the process of a thread, bytes.
-    measure : callable
-        ``measure(base, number, values)`` returns the row of a variant; a function of a module.
 
     Raises
     ------
@@ -84,15 +78,12 @@ class Cluster(Engine):
     """
 
     address: str
-    seconds: float = SECONDS
-    memory: int = MEMORY
-    measure: Measure = measured
 
     def __post_init__(self) -> None:
-        found = _answered(self.address)
-        there = {f"the worker {name}": one for name, one in found["workers"].items()}
-        there["the scheduler"] = found["scheduler"]
-        _demand_same(_versions(), {name: _told(one["packages"]) for name, one in there.items()})
+        versions = _answered(self.address)
+        there = {f"the worker {name}": known for name, known in versions["workers"].items()}
+        there["the scheduler"] = versions["scheduler"]
+        _demand_same(_versions(), {name: _told(known["packages"]) for name, known in there.items()})
 
     @property
     def name(self) -> str:
@@ -293,7 +284,7 @@ class _Chunks:
         if isinstance(error, ModuleNotFoundError):
             message = f"a worker has no module {error.name}"
             allowed = "gearcam, and the modules of a design's functions, on all workers"
-            raise DesignError([Problem(message, key="--scheduler", allowed=allowed)])
+            raise DesignError.of(message, key="--scheduler", allowed=allowed)
         if not isinstance(error, KilledWorker):
             raise error
         if not alone:
@@ -340,17 +331,16 @@ def _answered(address: str) -> dict[str, Any]:
         raise MissingExtraError("clusters", "sweep") from error
 
     async def ask() -> dict[str, Any]:
-        options = {"timeout": _ANSWER_S, "set_as_default": False}
-        async with Client(address, asynchronous=True, **options) as client:
+        async with Client(
+            address, asynchronous=True, timeout=_ANSWER_S, set_as_default=False
+        ) as client:
             asked: Any = client.get_versions(packages=["gearcam"])
             return await asked
 
-    async def ask_once() -> dict[str, Any]:  # dask waits for ever for what answers to nothing
-        return await asyncio.wait_for(ask(), 1.5 * _ANSWER_S)
-
     with _silent():
         try:
-            return asyncio.run(ask_once())
+            # dask waits for ever for what answers to nothing
+            return asyncio.run(asyncio.wait_for(ask(), 1.5 * _ANSWER_S))
         except (ValueError, TypeError) as error:
             why = str(error)
         except Exception:
@@ -358,23 +348,22 @@ def _answered(address: str) -> dict[str, Any]:
     allowed = (
         "the address of a running scheduler, such as tcp://HOST:8786 (`dask scheduler` starts one)"
     )
-    problem = Problem(f"{address}: {why}", key="--scheduler", allowed=allowed)
-    raise DesignError([problem])
+    raise DesignError.of(f"{address}: {why}", key="--scheduler", allowed=allowed)
 
 
 def _gone(address: str) -> DesignError:
     message = f"{address}: the scheduler does not answer any more"
     allowed = "the same command, which goes on, when it runs again"
-    return DesignError([Problem(message, key="--scheduler", allowed=allowed)])
+    return DesignError.of(message, key="--scheduler", allowed=allowed)
 
 
 def _versions() -> dict[str, str]:
     """Return the versions of Python and packages here; empty for what is not installed."""
-    found = {"python": sys.version}
+    versions = {"python": sys.version}
     for name in _SAME[1:]:
         with suppress(PackageNotFoundError):
-            found[name] = version(name)
-    return _told(found)
+            versions[name] = version(name)
+    return _told(versions)
 
 
 def _told(versions: Mapping[str, Any]) -> dict[str, str]:
@@ -403,7 +392,7 @@ def _demand_same(here: Mapping[str, str], others: Mapping[str, Mapping[str, str]
             wanted = ", ".join(f"{name} {one}" for name, one in here.items() if one)
             message = f"{whose} has {', '.join(wrong)}"
             allowed = f"the same on scheduler and workers: {wanted}"
-            raise DesignError([Problem(message, key="--scheduler", allowed=allowed)])
+            raise DesignError.of(message, key="--scheduler", allowed=allowed)
 
 
 @contextmanager

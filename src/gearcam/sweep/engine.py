@@ -1,15 +1,18 @@
-"""What builds the variants of a sweep: the interface of engines."""
+"""What builds the variants of a sweep: the interface of engines, and what they do with a log."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager
+from dataclasses import dataclass
 from typing import Any, Final
 
 from gearcam.base.display import ShortRepr
 from gearcam.designs.design import Design
-from gearcam.sweep.rows import Built
+from gearcam.sweep.log import Log
+from gearcam.sweep.plan import Plan
+from gearcam.sweep.rows import Built, Measure, measured
 
 Job = tuple[int, dict[str, Any]]
 """Number and values of a variant."""
@@ -27,8 +30,23 @@ MEMORY: Final = 4 << 30
 """Default limit of a process's memory, bytes."""
 
 
+@dataclass(frozen=True, kw_only=True)
 class Engine(ABC, ShortRepr):
-    """What builds variants."""
+    """What builds variants.
+
+    Parameters
+    ----------
+    seconds : float, s
+        Largest time of a variant.
+    memory : int
+        Largest memory of a process, bytes.
+    measure : callable
+        ``measure(base, number, values)`` returns the row of a variant; a function of a module.
+    """
+
+    seconds: float = SECONDS
+    memory: int = MEMORY
+    measure: Measure = measured
 
     @property
     @abstractmethod
@@ -49,3 +67,31 @@ class Engine(ABC, ShortRepr):
         """Yield the rows of one lot of variants (see `session`)."""
         with self.session(base) as build:
             yield from build(jobs)
+
+
+def run(
+    plan: Plan, log: Log, engine: Engine, progress: Callable[[int, int], Any] | None = None
+) -> None:
+    """Build what is missing in a log.
+
+    Parameters
+    ----------
+    plan : Plan
+        The variants.
+    log : Log
+        Of this sweep.
+    engine : Engine
+        What builds them.
+    progress : callable, optional
+        Called with the number of rows that are there and their total.
+    """
+
+    def missing() -> Iterator[Job]:
+        for number in range(plan.count):
+            if number not in log:
+                yield number, plan.values(number)
+
+    for row in engine.run(plan.base, missing()):
+        log.append(row)
+        if progress is not None:
+            progress(len(log), plan.count)

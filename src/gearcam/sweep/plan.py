@@ -88,24 +88,20 @@ class Plan(ShortRepr):
     def values(self, number: int) -> dict[str, Any]:
         """Return the values of a variant by keys."""
         if self.sampling == "grid":
-            found = {}
+            values = {}
             for axis in reversed(self.axes):  # the last one changes fastest
                 number, place = divmod(number, len(axis.values))
-                found[axis.key] = axis.values[place]
-            return {axis.key: found[axis.key] for axis in self.axes}
-        shares = zip(self.axes, self._shares[number].tolist(), strict=True)
-        return {axis.key: self.value(axis, u) for axis, u in shares}
+                values[axis.key] = axis.values[place]
+            return {axis.key: values[axis.key] for axis in self.axes}
+        return self.at(self._shares[number])
 
-    def value(self, axis: Varied, u: float) -> Any:
-        """Return a value of an axis, whole for keys of whole numbers.
+    def at(self, point: Array) -> dict[str, Any]:
+        """Return the values at a point (axes,) of the unit cube, by keys."""
+        shares = zip(self.axes, point.tolist(), strict=True)
+        return {axis.key: self._value(axis, u) for axis, u in shares}
 
-        Parameters
-        ----------
-        axis : Varied
-            One of the axes.
-        u : float
-            Share of its range, in [0, 1).
-        """
+    def _value(self, axis: Varied, u: float) -> Any:
+        """Return the value at a share of an axis, whole for keys of whole numbers."""
         value = axis.at(u)
         if axis.key not in self._wholes:
             return value
@@ -117,11 +113,11 @@ class Plan(ShortRepr):
         least, largest = self._wholes.get(axis.key, (0, 0))
         if least > largest:
             message = f"there is no whole number in {axis.text}"
-            raise DesignError([Problem(message, key=axis.key, allowed="a wider range")])
+            raise DesignError.of(message, key=axis.key, allowed="a wider range")
         first: DesignError | None = None
         for u in _LOOKS:
             try:
-                self.base.with_({axis.key: self.value(axis, u)})
+                self.base.with_({axis.key: self._value(axis, u)})
             except DesignError as error:
                 first = first or error
             else:
@@ -144,6 +140,16 @@ class Plan(ShortRepr):
         if self.sampling == "latin":
             return latin_hypercube(self.samples, len(self.axes), self.seed)
         return np.random.default_rng(self.seed).random((self.samples, len(self.axes)))
+
+    @property
+    def head(self) -> dict[str, Any]:
+        """The first line of its log."""
+        return {
+            "sweep": self.mark,
+            "file": self.base.source,
+            "variants": self.count,
+            "varied": [f"{axis.key}={axis.text}" for axis in self.axes],
+        }
 
     @cached_property
     def mark(self) -> str:
@@ -176,10 +182,10 @@ def latin_hypercube(count: int, axes: int, seed: int) -> Array:
 
 def flattened(table: Mapping[str, Any]) -> dict[str, Any]:
     """Return a table with dotted keys instead of tables in tables."""
-    found: dict[str, Any] = {}
+    flat: dict[str, Any] = {}
     for key, value in table.items():
         if isinstance(value, Mapping):
-            found |= {f"{key}.{inner}": one for inner, one in flattened(value).items()}
+            flat |= {f"{key}.{inner}": one for inner, one in flattened(value).items()}
         else:
-            found[key] = value
-    return found
+            flat[key] = value
+    return flat

@@ -20,8 +20,8 @@ from typing import Any, Final
 
 from gearcam.base.interrupts import unbroken
 from gearcam.designs.design import Design
-from gearcam.sweep.engine import MEMORY, SECONDS, Build, Engine, Job
-from gearcam.sweep.rows import Built, Measure, measured
+from gearcam.sweep.engine import Build, Engine, Job
+from gearcam.sweep.rows import Built
 from gearcam.sweep.worker import READY, main
 
 _SPAWN: Final = get_context("spawn")  # threads of this process do not survive a fork
@@ -40,24 +40,15 @@ _TWICE: Final = "its process ended twice while it was built"
 
 @dataclass(frozen=True, kw_only=True)
 class Processes(Engine):
-    """Processes of this machine.
+    """Processes of this machine (see `Engine`).
 
     Parameters
     ----------
     jobs : int
         Number of processes.
-    seconds : float, s
-        Largest time of a variant.
-    memory : int
-        Largest memory of a process, bytes.
-    measure : callable
-        ``measure(base, number, values)`` returns the row of a variant; a function of a module.
     """
 
     jobs: int
-    seconds: float = SECONDS
-    memory: int = MEMORY
-    measure: Measure = measured
 
     @property
     def name(self) -> str:
@@ -106,20 +97,20 @@ class Crew:
         RuntimeError
             If a process cannot begin.
         """
-        source, found = iter(jobs), list[Built | None]()
+        source, rows = iter(jobs), list[Built | None]()
         while True:
             for one in self._members:
                 if one.job is None and (job := next(source, None)) is not None:
                     one.build(job)
-            yield from filter(None, found)  # while the next ones are built
+            yield from filter(None, rows)  # while the next ones are built
             busy: dict[Any, _Process] = {one.link: one for one in self._members if one.job}
             if not busy:
                 return
             due = min(one.due for one in busy.values())
             ready = wait(busy, max(0.0, min(_LOOK, due - time.monotonic())))
-            found = [busy[link].answer() for link in ready]
+            rows = [busy[link].answer() for link in ready]
             now = time.monotonic()
-            found += [one.lost(late=True) for one in busy.values() if one.job and one.due <= now]
+            rows += [one.lost(late=True) for one in busy.values() if one.job and one.due <= now]
 
     def stop(self) -> None:
         """End the processes at once and for good; any thread may."""

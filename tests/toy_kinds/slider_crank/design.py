@@ -7,10 +7,9 @@ to x; the origin is the shaft of the crank.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
@@ -19,6 +18,7 @@ from gearcam.base.errors import Adjustment, InfeasibleError
 from gearcam.base.facts import Fact, Facts, extent
 from gearcam.base.findings import Finding, in_order
 from gearcam.base.quantities import ANGLE, LENGTH, nested, param
+from gearcam.base.registry import deferred
 from gearcam.base.rules import exactly_one
 from gearcam.designs.design import Design
 from gearcam.designs.outputs import OutputSpec, files_param, studies_param
@@ -29,13 +29,26 @@ from gearcam.pictures.charts import Chart, Line
 from gearcam.pictures.drawings import CENTER, FOLLOWER, Cross, Feature, Path
 from gearcam.pictures.scenes import PLACES, MovingBody, Scene, still
 from gearcam.report.file import report_files
-from gearcam.results.kind import Kind, Study
+from gearcam.results.kind import Kind, Study, studies_of
 from gearcam.results.nested import placed, within
 from gearcam.results.result import Result, StudyResult
 
 FORMATS = ("csv", "report")
 STEEPEST = 45.0
 """Angle between rod and guide from which a finding warns, deg."""
+
+
+STUDIES = studies_of(
+    "slider-crank",
+    Study(
+        name="slide",
+        key="stroke",
+        doc="Compute the slider's motion.",
+        done="computed",
+        table="stroke",
+        compute=deferred("gearcam.kinds.slider_crank.design:_stroke"),
+    ),
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,10 +86,8 @@ class StrokeSpec:
 
 @dataclass(frozen=True, kw_only=True)
 class SliderOutput(OutputSpec):
-    study_tables: ClassVar[Mapping[str, str]] = {"slide": "stroke"}
-
-    files: tuple[str, ...] = files_param(FORMATS)
-    studies: tuple[str, ...] = studies_param(study_tables)
+    files: tuple[str, ...] = files_param(FORMATS, "slider-crank")
+    studies: tuple[str, ...] = studies_param(STUDIES)
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -261,7 +272,7 @@ def _stroke(result: Any, _: Any) -> StudyResult:
     fast = Fact(float(rate[at]), "fastest", unit="mm per driver", place=f"{asked[at]:.6g}")
     return StudyResult(
         result=result,
-        study=SLIDE,
+        study=result.kind.studies["slide"],
         file="slider.csv",
         table={name: asked, "slider_mm": along, "rate": rate, "rod_deg": np.degrees(angle)},
         group={"rows": count, "fastest": fast},
@@ -272,12 +283,6 @@ def _stroke(result: Any, _: Any) -> StudyResult:
             )
         },
     )  # fmt: skip
-
-
-SLIDE = Study(
-    name="slide", key="stroke", doc="Compute the slider's motion.", done="computed",
-    table="stroke", compute=_stroke,
-)  # fmt: skip
 
 
 KIND = Kind(
@@ -303,5 +308,5 @@ KIND = Kind(
     },
     charts={"motion": motion_chart},
     scene=scene,
-    studies={"slide": SLIDE},
+    studies=STUDIES,
 )

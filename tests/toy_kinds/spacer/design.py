@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
@@ -13,14 +12,28 @@ from gearcam.base.errors import Adjustment, InfeasibleError
 from gearcam.base.facts import Fact, Facts
 from gearcam.base.findings import Finding
 from gearcam.base.quantities import LENGTH, NUMBER, param
+from gearcam.base.registry import deferred
 from gearcam.designs.design import Design
 from gearcam.designs.outputs import OutputSpec, files_param, studies_param
 from gearcam.export.table import outline_bytes
 from gearcam.pictures.charts import Chart, Line
-from gearcam.results.kind import Kind, Study
+from gearcam.results.kind import Kind, Study, studies_of
 from gearcam.results.result import Result, StudyResult
 
 FORMATS = ("csv", "outline-txt")
+
+
+STUDIES = studies_of(
+    "spacer",
+    Study(
+        name="weigh",
+        key="weight",
+        doc="Weigh a spacer.",
+        done="weighed",
+        table="weight",
+        compute=deferred("gearcam.kinds.spacer.design:_weigh"),
+    ),
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,10 +49,8 @@ class WeightSpec:
 
 @dataclass(frozen=True, kw_only=True)
 class SpacerOutput(OutputSpec):
-    study_tables: ClassVar[Mapping[str, str]] = {"weigh": "weight"}
-
-    files: tuple[str, ...] = files_param(FORMATS)
-    studies: tuple[str, ...] = studies_param(study_tables)
+    files: tuple[str, ...] = files_param(FORMATS, "spacer")
+    studies: tuple[str, ...] = studies_param(STUDIES)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -98,7 +109,7 @@ def _weigh(result: Any, _: Any) -> StudyResult:
     mass = float(1e-3 * area * result.design.weight.density)
     return StudyResult(
         result=result,
-        study=WEIGH,
+        study=result.kind.studies["weigh"],
         file="weight.csv",
         table={"mass_g_per_mm": [mass]},
         group={"mass_g_per_mm": Fact(mass, "mass of a thickness of 1 mm", unit="g", shown=True)},
@@ -114,12 +125,6 @@ def _weigh(result: Any, _: Any) -> StudyResult:
 
 _ONE = (np.array([0.0, 1.0]), np.array([0.0, 1.0]))
 
-WEIGH = Study(
-    name="weigh", key="weight", doc="Weigh a spacer.", done="weighed", table="weight",
-    compute=_weigh,
-)  # fmt: skip
-
-
 KIND = Kind(
     name="spacer",
     doc="a spacer, a flat ring",
@@ -129,5 +134,5 @@ KIND = Kind(
     example={"ring": {"bore_mm": 20}},
     facts=facts,
     files=FILES,
-    studies={"weigh": WEIGH},
+    studies=STUDIES,
 )

@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from gearcam.base.registry import Registry, lazy_names
+from gearcam.kinds.cam.forms.base import FORMS
+from gearcam.laws.motion import MOTION_LAWS
+from gearcam.laws.ratio import LAWS
 
 HOME = """
-from registry_of_sizes import SIZES, Size
-SIZES.register(Size(name="{0}"))
-SIZES.register(Size(name="{0}er"))
+from registry_of_sizes import Size
+ENTRIES = (Size(name="{0}"), Size(name="{0}er"))
 """
+
+
+HOMES = ("sizes.small", "sizes.tall")
 
 
 @dataclass(frozen=True)
@@ -28,19 +35,16 @@ class Size:
 
 @pytest.fixture
 def sizes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Registry[Size]]:
-    made: Registry[Size] = Registry(
-        "size", {"home_of_small": ("small", "smaller"), "home_of_tall": ("tall", "taller")}
-    )
     module = type(sys)("registry_of_sizes")
-    module.SIZES, module.Size = made, Size  # pyright: ignore[reportAttributeAccessIssue]
+    module.Size = Size  # pyright: ignore[reportAttributeAccessIssue]
     monkeypatch.setitem(sys.modules, "registry_of_sizes", module)
     monkeypatch.syspath_prepend(tmp_path)
+    (tmp_path / "sizes").mkdir()
     for name in ("small", "tall"):
-        (tmp_path / f"home_of_{name}.py").write_text(HOME.format(name))
-        monkeypatch.delitem(sys.modules, f"home_of_{name}", raising=False)
-    yield made
-    for name in ("small", "tall"):
-        sys.modules.pop(f"home_of_{name}", None)
+        (tmp_path / "sizes" / f"{name}.py").write_text(HOME.format(name))
+    yield Registry("size", "sizes", {"small": ("small", "smaller"), "tall": ("tall", "taller")})
+    for name in ("sizes", *HOMES):
+        sys.modules.pop(name, None)
 
 
 def test_names_are_known_before_anything_is_loaded(sizes: Registry[Size]) -> None:
@@ -48,13 +52,13 @@ def test_names_are_known_before_anything_is_loaded(sizes: Registry[Size]) -> Non
     assert len(sizes) == 4
     assert "taller" in sizes
     assert "huge" not in sizes
-    assert not {"home_of_small", "home_of_tall"} & set(sys.modules)
+    assert not set(HOMES) & set(sys.modules)
 
 
 def test_an_entry_loads_its_home_only(sizes: Registry[Size]) -> None:
     assert sizes["taller"] == Size("taller")
     assert sizes["tall"] == Size("tall")
-    assert "home_of_small" not in sys.modules
+    assert HOMES[0] not in sys.modules
     assert [size.name for size in sizes.values()] == list(sizes)
 
 
@@ -62,17 +66,22 @@ def test_unknown_names_are_key_errors(sizes: Registry[Size]) -> None:
     assert sizes.get("huge") is None
     with pytest.raises(KeyError, match="huge"):
         sizes["huge"]
-    sizes.register(Size("huge"))  # one without a home
-    assert sizes["huge"] == Size("huge")
-    assert list(sizes)[-1] == "huge"
-    assert len(sizes) == 5
 
 
-def test_a_name_is_given_once(sizes: Registry[Size]) -> None:
-    first = sizes["small"]
-    with pytest.raises(ValueError, match="size 'small' is registered twice"):
-        sizes.register(Size("small"))
-    assert sizes["small"] is first
+@pytest.mark.parametrize("registry", [LAWS, MOTION_LAWS, FORMS], ids=repr)
+def test_each_module_has_the_entries_that_its_name_promises(registry: Registry[Any]) -> None:
+    for name, entry in registry.items():
+        assert entry.name == name
+    homes = set(registry._homes.values())
+    named = [one.name for home in homes for one in importlib.import_module(home).ENTRIES]
+    assert sorted(named) == sorted(registry)
+
+
+def test_parameters_name_their_law() -> None:
+    for registry in (LAWS, MOTION_LAWS):
+        for name, entry in registry.items():
+            assert registry.name_of(entry.example) == name
+    assert LAWS.name_of(Size("tall")) == ""
 
 
 def test_names_of_a_package_load_what_they_need() -> None:

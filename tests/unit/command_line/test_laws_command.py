@@ -8,8 +8,8 @@ import pytest
 
 from gearcam.cli import main
 from gearcam.laws.entry import SOURCES
-from gearcam.laws.motion.base import MOTION_LAWS
-from gearcam.laws.ratio.base import LAWS
+from gearcam.laws.motion import MOTION_LAWS
+from gearcam.laws.ratio import LAWS
 
 
 def test_laws_shows_every_law_with_keys_continuity_and_source(

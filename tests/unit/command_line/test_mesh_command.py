@@ -17,10 +17,10 @@ from gearcam.designs import loads
 from gearcam.gears.contact import FlankPairs
 from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.kinds.gear_pair.result import GearPairResult
-from gearcam.kinds.gear_pair.studies import MESH
 from gearcam.meshing import study as room
 from gearcam.meshing.contact import Contacts
 from gearcam.numeric.arrays import Array
+from gearcam.results.kind import KINDS
 
 TEXT = """
 kind = "gear-pair"
@@ -200,12 +200,13 @@ def test_an_interruption_before_the_first_step_writes_nothing(
 
 
 def test_settings_from_python_meet_the_same_rules() -> None:
-    design = studied(MESH, loads(TEXT), {"overclosure_deg": -0.5, "teeth": [3, 4]})
+    mesh = KINDS["gear-pair"].studies["mesh"]
+    design = studied(mesh, loads(TEXT), {"overclosure_deg": -0.5, "teeth": [3, 4]})
     assert design.meshing.overclosure == pytest.approx(math.radians(-0.5))
     assert design.meshing.teeth == (3, 4)
     assert design.meshing.steps == 12
     with pytest.raises(DesignError, match=r"meshing\.overclosure_deg"):
-        studied(MESH, design, {"overclosure_deg": 2})
+        studied(mesh, design, {"overclosure_deg": 2})
 
 
 def test_a_study_without_a_beginning_begins_at_zero() -> None:

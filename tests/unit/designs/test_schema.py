@@ -21,9 +21,9 @@ from gearcam.designs.examine import examine
 from gearcam.designs.kind import KINDS
 from gearcam.designs.schema import schema
 from gearcam.designs.template import template
-from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.laws.motion import MOTION_LAWS
 from gearcam.laws.phases_of_lift import PHASES
-from gearcam.laws.ratio.base import LAWS
+from gearcam.laws.ratio import LAWS
 from helpers_pairs import PROFILES
 from helpers_tables import WITH_LAW, index_table, law_table, phase_table, rise_table, turn_tables
 

@@ -26,8 +26,8 @@ from claims.motion import MOTION_CLAIMS
 from gearcam.base.tolerances import DEFAULT
 from gearcam.cli import main
 from gearcam.designs import KINDS
-from gearcam.laws.motion.base import MOTION_LAWS
-from gearcam.laws.ratio.base import LAWS
+from gearcam.laws.motion import MOTION_LAWS
+from gearcam.laws.ratio import LAWS
 from gearcam.laws.ratio.span import Lobes
 from helpers_built import built
 from helpers_sampling import chosen, few
@@ -160,13 +160,44 @@ def test_every_key_of_the_summary_is_described(name: str, tmp_path: Path) -> Non
     assert unknown(written.summary, SUMMARY) == set()
 
 
-def test_every_key_of_studies_is_described(tmp_path: Path) -> None:
-    pair = gearcam.build(gearcam.load(rules.ROOT / "profiles" / "ellipse.toml"))
-    assert isinstance(pair, gearcam.GearPairResult)
-    assert unknown(pair.mesh(steps=24).write(tmp_path).summary, SUMMARY) == set()
-    columns = (tmp_path / "ellipse" / "meshing.csv").read_text("ascii").split("\n")[0].split(",")
-    assert [name for name in columns if f"`{name}`" not in SUMMARY] == []
-    assert unknown({"accuracy": {}, "new_key": 1}, SUMMARY) == {"new_key"}  # a control
+STUDIES: dict[tuple[str, str], tuple[str, dict[str, Any]]] = {
+    ("gear-pair", "mesh"): ("ellipse", {"meshing.steps": 24}),
+    ("gear-pair", "errors"): ("ellipse", {"errors.steps": 24}),
+    ("cam", "forces"): ("valve_lever", {"forces.steps": 24}),
+    ("cam", "follow"): ("tappet", {"follow.file": "profile.csv"}),
+    ("cam", "precision"): ("plate_cam_offset_roller", {}),
+    ("spatial-cam", "developed"): ("cylinder_cam", {"developed.steps": 24}),
+    ("mechanism", "torque"): ("nail_machine_slide", {"compare": []}),
+}
+"""A design for each study, and what is changed in it."""
+
+
+def test_every_study_but_accuracy_has_a_design() -> None:
+    every = {(kind.name, study) for kind in KINDS.values() for study in kind.studies}
+    assert set(STUDIES) == {one for one in every if one[1] != "accuracy"}
+
+
+@pytest.mark.parametrize("case", STUDIES, ids=lambda case: case[1])
+def test_every_key_of_studies_is_described(
+    case: tuple[str, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kind, name = case
+    profile, changes = STUDIES[case]
+    design = gearcam.load(rules.ROOT / "profiles" / f"{profile}.toml")
+    monkeypatch.chdir(tmp_path)
+    if name == "follow":
+        Path("profile.csv").write_bytes(gearcam.build(design).files("csv")["profile.csv"])
+    written = gearcam.build(design.with_(changes)).study(name).write(tmp_path)
+    group = written.summary[KINDS[kind].studies[name].key]
+    assert group
+    assert unknown({"accuracy": {}, name: group}, SUMMARY) == set()
+    if name == "mesh":
+        rows = (tmp_path / profile / "meshing.csv").read_text("ascii")
+        assert [one for one in rows.split("\n")[0].split(",") if f"`{one}`" not in SUMMARY] == []
+
+
+def test_a_key_that_is_not_described_is_seen() -> None:
+    assert unknown({"accuracy": {}, "new_key": 1}, SUMMARY) == {"new_key"}
 
 
 GUIDE = (rules.ROOT / "docs" / "contributing.md").read_text("utf-8")
@@ -175,14 +206,15 @@ BLOCKS = [block for language, block in FENCE.findall(GUIDE) if language == "pyth
 
 
 def _added(name: str, number: int, monkeypatch: pytest.MonkeyPatch) -> Any:
-    """A law of the guide with its claims: a module that has registered it for this test."""
+    """A law of the guide with its claims: a module in which its registry finds it."""
     registry, known = ((LAWS, LAW_CLAIMS), (MOTION_LAWS, MOTION_CLAIMS))[number // 2]
-    # the original entries come back after the test
-    monkeypatch.setattr(registry, "_entries", {**registry})
     module = types.ModuleType(name)
     monkeypatch.setitem(sys.modules, name, module)
     for block in BLOCKS[number : number + 2]:
         exec(compile(block, "law.py", "exec"), vars(module))
+    homes = {**registry._homes, **{one.name: name for one in module.ENTRIES}}
+    monkeypatch.setattr(registry, "_homes", homes)
+    monkeypatch.setattr(registry, "_entries", {**registry})
     (added,) = module.CLAIMS
     assert [*registry][-1] == added
     monkeypatch.setitem(known, added, module.CLAIMS[added])

@@ -13,8 +13,8 @@ import gearcam
 import reference
 from gearcam.base.findings import CHECKS
 from gearcam.base.quantities import REQUIRED
-from gearcam.laws.motion.base import MOTION_LAWS
-from gearcam.laws.ratio.base import LAWS
+from gearcam.laws.motion import MOTION_LAWS
+from gearcam.laws.ratio import LAWS
 from gearcam.results.kind import KINDS
 from helpers_pairs import PROFILES
 from helpers_sampling import chosen, few

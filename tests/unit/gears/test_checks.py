@@ -310,8 +310,8 @@ def test_contact_ratio_of_circular_wheels_is_the_textbooks() -> None:
     path = tip(r1) + tip(r2) - (r1 + r2) * math.sin(alpha)
     expected = path / (math.pi * math.cos(alpha))
     for pairs in subject.sides:
-        np.testing.assert_allclose(pairs.contact_ratios, expected, rtol=1e-9)
-        assert pairs.stretches[2].min() == 1
+        np.testing.assert_allclose(pairs.arcs.ratios, expected, rtol=1e-9)
+        assert pairs.arcs.stretches[2].min() == 1
 
 
 def test_findings_come_worst_first() -> None:

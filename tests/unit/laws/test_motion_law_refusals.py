@@ -13,7 +13,7 @@ from gearcam.base.tolerances import DEFAULT
 from gearcam.designs.table import table_of
 from gearcam.designs.validate import faults_of, rule_faults
 from gearcam.laws.columns import ColumnsError, read_rows
-from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.laws.motion import MOTION_LAWS
 from gearcam.laws.motion.formula import FormulaRise
 from gearcam.laws.motion.points import BSplineRise, TableRise
 from gearcam.laws.motion.polynomials import Polynomial

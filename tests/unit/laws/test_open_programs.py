@@ -10,7 +10,7 @@ import pytest
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.tolerances import DEFAULT
-from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.laws.motion import MOTION_LAWS
 from gearcam.laws.phases_of_lift import ReturnPhase, RisePhase, SegmentPhase, program_problems
 from gearcam.laws.program import make_program
 from helpers_cams import there_and_back

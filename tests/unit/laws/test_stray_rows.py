@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 import gearcam as gc
 from gearcam.base.errors import DesignError
 from gearcam.base.tolerances import DEFAULT
-from gearcam.laws.motion.base import MOTION_LAWS
-from gearcam.laws.ratio.base import LAWS as RATIO_LAWS
+from gearcam.laws.motion import MOTION_LAWS
+from gearcam.laws.ratio import LAWS as RATIO_LAWS
 from gearcam.laws.ratio.span import Lobes
 from gearcam.laws.row_checks import given_in, row_findings
 from gearcam.numeric.stray import stray_rows

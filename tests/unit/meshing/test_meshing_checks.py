@@ -82,7 +82,7 @@ def test_contact_ratio_below_one_is_an_error_and_says_that_edges_drive() -> None
     finding = findings["contact-ratio"]
     assert finding.severity == "error"
     assert "tooth edges drive" in finding.message
-    ratio = mount(short.gears, FEW).pairs[DRIVE].contact_ratios[0]
+    ratio = mount(short.gears, FEW).pairs[DRIVE].arcs.ratios[0]
     assert finding.value == pytest.approx(ratio, rel=1e-9)
     assert ratio < 1.0
     longer = job(Constant(), (20, 20), module=2.0, rack=Rack(addendum=0.7, dedendum=0.9))
@@ -92,7 +92,7 @@ def test_contact_ratio_below_one_is_an_error_and_says_that_edges_drive() -> None
 def test_what_is_the_same_of_both_sides_is_one_finding_with_the_worse_value() -> None:
     """The nail machine carries worse driving than holding back; both limits are above both."""
     sides = tuple(flank_pairs(profile("nail_machine_three_phase").gears, s) for s in (COAST, DRIVE))
-    least = [float(side.contact_ratios.min()) for side in sides]
+    least = [float(side.arcs.ratios.min()) for side in sides]
     assert least[1] < least[0]
     (both,) = contact_ratio(SimpleNamespace(sides=sides), 2.0)
     assert both.value == least[1]
@@ -107,13 +107,15 @@ def test_what_is_the_same_of_both_sides_is_one_finding_with_the_worse_value() ->
 def test_a_flank_of_less_than_a_pitch_is_an_error_though_its_neighbours_drive() -> None:
     """One flank of the driver is shorter at both ends; those beside it cover what it leaves."""
     pairs = flank_pairs(job(Constant(), (20, 20), module=2.0).gears, DRIVE)
-    flanks, mate = pairs.flanks
+    driver, driven = pairs.wheels
+    flanks = driver.flanks
     highest, lowest = flanks.highest.copy(), flanks.lowest.copy()
     highest[20 + 7] -= 0.4 * pairs.pitch
-    lowest[20 + 7] = 0.3 * pairs.pitch - mate.highest[0]
-    short = replace(pairs, flanks=(replace(flanks, highest=highest, lowest=lowest), mate))
-    assert short.contact_ratios.min() < 1.0
-    assert short.stretches[2].min() == 1
+    lowest[20 + 7] = 0.3 * pairs.pitch - driven.flanks.highest[0]
+    driver = replace(driver, flanks=replace(flanks, highest=highest, lowest=lowest))
+    short = replace(pairs, wheels=(driver, driven))
+    assert short.arcs.ratios.min() < 1.0
+    assert short.arcs.stretches[2].min() == 1
     (finding,) = contact_ratio(SimpleNamespace(sides=(short,)), 1.1)
     assert finding.severity == "error"
     assert "neighbours drive" in finding.message

@@ -11,7 +11,7 @@ import pytest
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.quantities import params_of
-from gearcam.kinds.gear_pair.drawn import pair_drawing
+from gearcam.kinds.gear_pair.drawings import pair_drawing
 from gearcam.numeric.arrays import as_pairs
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.pose import Pose

@@ -14,7 +14,7 @@ import pytest
 import gearcam
 from gearcam.base.errors import DesignError
 from gearcam.cli import main
-from gearcam.results.kind import KINDS
+from gearcam.results.kind import KINDS, Study
 
 PROFILES = Path(__file__).parents[3] / "profiles"
 CENTER = {"meshing.center_distance_mm": 42.2, "meshing.steps": 96}
@@ -164,12 +164,10 @@ def test_a_build_writes_it_and_its_report_shows_it(
 
 
 def test_a_search_for_remedies_does_without_it(asked: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    from gearcam.kinds.gear_pair.studies import MESH
-
     def never(*_: Any) -> None:
         raise AssertionError("a study was computed")
 
-    monkeypatch.setattr(type(MESH), "compute", property(lambda _: never), raising=False)
+    monkeypatch.setattr(Study, "compute", property(lambda _: never), raising=False)
     wide = asked.design.with_({"blank.bore_diameter_mm": 60})
     assert gearcam.remedies(gearcam.build(wide), patience=3.0).builds > 0
 
@@ -178,15 +176,14 @@ def test_a_study_may_use_the_scene_of_its_design(
     asked: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Without itself in it."""
-    from gearcam.kinds.gear_pair import studies
-
     usual = asked.study("mesh")
 
     def compute(result: Any, _: Any) -> Any:
         assert "as mounted" not in result.scene(12).contacts
         return usual
 
-    monkeypatch.setitem(studies.STUDIES, "mesh", replace(studies.MESH, compute=compute))
+    studies = KINDS["gear-pair"].studies
+    monkeypatch.setattr(studies, "own", {"mesh": replace(studies["mesh"], compute=compute)})
     result = gearcam.build(asked.design)
     assert result.study("mesh") is usual
     assert "as mounted" in result.scene(12).contacts

@@ -49,8 +49,8 @@ WATCHED = {
     "gearcam.parts.tools": ("tool_limits",),
     "gearcam.parts.mass": ("mass_properties",),
     "gearcam.parts.solids": ("solid",),
-    "gearcam.kinds.cam.drawn": ("cam_drawing",),
-    "gearcam.kinds.gear_pair.drawn": ("pair_drawing",),
+    "gearcam.kinds.cam.drawings": ("cam_drawing",),
+    "gearcam.kinds.gear_pair.drawings": ("pair_drawing",),
     "gearcam.kinds.gear_pair.sheet": ("pair_sheet",),
     "gearcam.pictures.drawings": ("wheel_drawing",),
     "gearcam.sheets": ("wheel_sheet",),
@@ -305,7 +305,7 @@ def test_contact_is_sought_on_the_teeth_in_mesh_alone(ellipse: Any) -> None:
     """Pairs at a phase: those of a contact ratio below 2 and one to either side, however many."""
     phases = np.linspace(0.0, 2.0 * np.pi, 360, endpoint=False)
     for pairs in ellipse.subject.sides:
-        assert pairs.contact_ratios.max() < 2.0
+        assert pairs.arcs.ratios.max() < 2.0
         step, _ = pairs.beside(phases)
         assert set(np.bincount(step)) == {5}
 

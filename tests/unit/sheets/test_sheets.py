@@ -14,7 +14,7 @@ from gearcam.base.errors import InfeasibleError
 from gearcam.base.facts import Facts
 from gearcam.base.numerals import decimal
 from gearcam.export.dxf_read import read_dxf
-from gearcam.kinds.gear_pair.drawn import pair_drawing
+from gearcam.kinds.gear_pair.drawings import pair_drawing
 from gearcam.kinds.gear_pair.sheet import pair_sheet
 from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Mark, Opening, Part

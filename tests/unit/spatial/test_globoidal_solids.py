@@ -13,7 +13,7 @@ import pytest
 
 import gearcam as gc
 from gearcam.numeric.arrays import Array
-from gearcam.parts.solids import Mesh
+from gearcam.numeric.mesh import Mesh
 from gearcam.spatial.globoidal import GloboidalCam
 from gearcam.spatial.globoidal_carving import scallop
 from gearcam.spatial.globoidal_surface import (
@@ -259,7 +259,7 @@ def test_a_carved_rib_is_the_rib_of_walls(monkeypatch: pytest.MonkeyPatch, steps
 def test_the_rib_goes_beyond_all_that_bounds_it() -> None:
     cam = indexer()
     made = rib_surface(cam, 360, 7)
-    assert Mesh(vertices=made.vertices, triangles=made.triangles).watertight
+    assert made.watertight
     depth = cam.depth(made.vertices)
     assert depth.min() == pytest.approx(cam.top - 0.4)
     assert depth.max() == pytest.approx(cam.floor + 0.4)
@@ -271,7 +271,7 @@ def test_the_turret_has_a_roller_for_each_stop() -> None:
     made = turret_surface(indexer(), 44.0, 96)
     bodies = solid(made).decompose()
     assert len(bodies) == 9
-    assert Mesh(vertices=made.vertices, triangles=made.triangles).watertight
+    assert made.watertight
     x, y, z = made.vertices.T
     assert np.hypot(x, z).max() == pytest.approx(math.hypot(58.0, 8.0), rel=1e-3)
     assert np.abs(y).max() == pytest.approx(1.2 * 8.0)

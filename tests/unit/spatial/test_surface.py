@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import gearcam as gc
-from gearcam.parts.solids import Mesh
+from gearcam.numeric.mesh import Mesh
 from gearcam.spatial.cam import SpatialCam
 from gearcam.spatial.guides import RollerGuide, Turret
 from gearcam.spatial.surface import Cylinder, chord_error, roller_surface, surface
@@ -24,8 +24,7 @@ EXACT = 44298.298
 
 
 def mesh(cam: SpatialCam, steps: int = 720, places: int = 13, **blank: float) -> Mesh:
-    made = surface(cam, Cylinder(**({"length": 60.0} | blank)), steps, places)
-    return Mesh(vertices=made.vertices, triangles=made.triangles)
+    return surface(cam, Cylinder(**({"length": 60.0} | blank)), steps, places)
 
 
 @pytest.mark.parametrize("sides", [(1, -1), (1,), (-1,)])
@@ -148,12 +147,11 @@ def test_the_surface_of_a_roller_is_closed_and_has_its_volume(half_angle: float)
     """Against a truncated cone and a cylinder of half its radius, as prisms of the same corners."""
     cam = reference(half_angle=half_angle)
     made = roller_surface(cam, 90)
-    body = Mesh(vertices=made.vertices, triangles=made.triangles)
-    assert body.watertight
+    assert made.watertight
     area = 45.0 * math.sin(2.0 * math.pi / 90)  # of 90 chords about a circle of radius 1
     thin = 8.0 - 12.0 * math.tan(half_angle)
     cone = 12.0 / 3.0 * (8.0**2 + 8.0 * thin + thin**2)
-    assert body.volume == pytest.approx(area * (cone + 8.0 * 4.0**2), rel=1e-12)
+    assert made.volume == pytest.approx(area * (cone + 8.0 * 4.0**2), rel=1e-12)
     assert (made.vertices[:, 0].min(), made.vertices[:, 0].max()) == (28.0, 48.0)
 
 

@@ -15,7 +15,8 @@ import gearcam as gc
 from gearcam.base.errors import NotFiniteError
 from gearcam.base.findings import run_checks
 from gearcam.base.numerals import shortened
-from gearcam.parts.solids import Mesh, carved
+from gearcam.numeric.mesh import Mesh
+from gearcam.parts.solids import carved
 from gearcam.spatial.cam import SpatialCam, SpatialWall
 from gearcam.spatial.carving import roller_corners, scallop
 from gearcam.spatial.checks import KIND
@@ -27,7 +28,7 @@ from gearcam.spatial.hulls import round_hulls
 from gearcam.spatial.surface import Cylinder, blank_surface, surface
 from gearcam.spatial.trimmed import TrimmedWall, lost_lift
 from helpers_sampling import chosen, few
-from helpers_spatial import enclosed, reference, slice_way, solid, swept, swinging
+from helpers_spatial import reference, slice_way, solid, swept, swinging
 from witness.roller_in_space import Mechanism
 
 _DENSE = 20001
@@ -135,9 +136,7 @@ def test_an_undercut_that_takes_no_lift_does_not_tell_of_0_mm(more: float) -> No
 
 
 def carving(cam: SpatialCam, steps: int, places: int) -> Mesh:
-    made = blank_surface(cam, BLANK, 4 * steps)
-    whole = Mesh(vertices=made.vertices, triangles=made.triangles)
-    return carved(whole, roller_corners(cam, BLANK, steps, places))
+    return carved(blank_surface(cam, BLANK, 4 * steps), roller_corners(cam, BLANK, steps, places))
 
 
 ROUND = math.pi * (40.0**2 - 10.0**2) * 110.0
@@ -170,7 +169,7 @@ def test_the_carved_solid_has_the_volume_of_the_search(count: int) -> None:
 )
 def test_carving_a_whole_groove_gives_its_surface(more: dict[str, Any]) -> None:
     cam = cut(8.0, **more)
-    true = enclosed(surface(cam, BLANK, 720, 13))
+    true = surface(cam, BLANK, 720, 13).volume
     errors = [carving(cam, n, n // 12).volume - true for n in (36, 72)]
     assert errors[1] > 0.0
     assert 2.5 < errors[0] / errors[1] < 5.0

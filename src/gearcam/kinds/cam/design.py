@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final, get_args
 
+from gearcam.base.brought import group_of
 from gearcam.base.numerals import formatted, shortened
 from gearcam.base.quantities import Solve
 from gearcam.base.registry import DeferredMapping, deferred
@@ -31,6 +32,8 @@ from gearcam.kinds.cam.forms.base import FORMS, VARIANTS
 from gearcam.kinds.cam.motion import MOTION, circumstances
 from gearcam.kinds.cam.tables import (
     GOALS,
+    NAME,
+    STUDIES,
     BoundsSpec,
     CamBlank,
     CamOutputSpec,
@@ -52,9 +55,6 @@ if TYPE_CHECKING:
     from gearcam.kinds.cam.forms.translating import PlateBlank
     from gearcam.kinds.cam.motion import Motion
     from gearcam.parts.blank import WheelBlank
-
-NAME: Final = "cam"
-"""As in a file."""
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -341,7 +341,7 @@ KIND: Final = Kind(
         "blank": {"bore_diameter_mm": 8},
         "output": {"files": ["dxf", "csv", "report"]},
     },
-    shown={
+    samples={
         "goal": {
             "minimize": "cam.profile.radius_mm.max",
             "maximize": "cam.curvature.profile_convex_min_mm",
@@ -370,11 +370,11 @@ KIND: Final = Kind(
         "cam": "give prime_radius_mm or base_radius_mm; with a flat follower base_radius_mm",
     },
     facts=deferred(f"{_HERE}.shown:facts"),
-    files=DeferredMapping(f"{_HERE}.shown:FILES"),
+    files=DeferredMapping(f"{_HERE}.shown:FILES", group_of(NAME, "formats")),
     charts=DeferredMapping(f"{_HERE}.drawn:CHARTS"),
     scene=deferred(f"{_HERE}.drawn:scene"),
     advice=deferred(f"{_HERE}.hints:CamAdvice"),
-    studies=DeferredMapping(f"{_HERE}.studies:STUDIES"),
-    ladders=DeferredMapping(f"{_HERE}.studies:LADDERS"),
+    studies=STUDIES,
+    ladders=DeferredMapping(f"{_HERE}.ladders:LADDERS"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
 )

@@ -1,4 +1,4 @@
-"""What is drawn of a cam: charts, the plate with its follower, the scene and what colours it.
+"""What is drawn of a cam: charts, the scene and what colours it.
 
 A chart is over cam angle or travel. In the scene the parts move over a turn or travel with the
 follower, and profiles are coloured by values along them.
@@ -7,42 +7,25 @@ follower, and profiles are coloured by values along them.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.base.errors import InfeasibleError
 from gearcam.base.findings import limit_of
 from gearcam.base.numerals import formatted
 from gearcam.cams.checks import KIND, pressure_limits
 from gearcam.cams.wall import PitchMotion, Wall
+from gearcam.kinds.cam.charts import over_driver
 from gearcam.kinds.cam.result import pressure_column, rho_column
 from gearcam.numeric.arrays import Array
-from gearcam.numeric.contour import Contour
 from gearcam.numeric.piecewise import with_both_sides
-from gearcam.numeric.pose import UNMOVED, Pose
+from gearcam.numeric.pose import Pose
 from gearcam.parts.blank import KIND as PARTS_KIND
-from gearcam.parts.body import Part
-from gearcam.parts.parallel import moved, sized
-from gearcam.parts.shapes import Circle
-from gearcam.pictures.charts import Chart, Charts, Limit, Line, MarkedPlace, knot_marks
+from gearcam.pictures.charts import Chart, Charts, Limit, Line
 from gearcam.pictures.drawings import (
-    BLANK,
     CENTER,
-    CROSS_SIZE,
     FOLLOWER,
-    PITCH,
-    PRIME,
-    PROFILE,
-    Cross,
-    Drawing,
-    Feature,
-    Path,
-    Shape,
-    part_features,
     place,
 )
 from gearcam.pictures.scenes import PLACES, ColouredCurve, ContactPoints, MovingBody, Scene, still
@@ -58,32 +41,17 @@ _TIMES: Final = 6.0
 an undercut or nearly sharp profile has no largest one, and would leave no room for the rest."""
 
 
-def places_of(result: CamResult) -> tuple[str, str]:
-    """Return the column of cam angles or travels, and its axis label."""
-    driver = result.driver
-    return driver.column, f"{driver.called} {driver.symbol}, {driver.unit}"
-
-
-def knots_of(result: CamResult) -> tuple[MarkedPlace, ...]:
-    """Return marks at the knots of the motion."""
-    driver = result.driver
-    return knot_marks(driver.scale * np.asarray(result.program.knots), 0.0, driver.whole)
-
-
 def _of_time(name: str, result: CamResult) -> Chart | None:
     drive = result.design.drive
     timed = result.cam.motions[0].timed_scales(drive.speed)
     for column in timed:
         if column.startswith(name):
             unit = column.removeprefix(f"{name}_").replace("_", "/", 1)
-            places, label = places_of(result)
             table = result.motion_of_turn
-            return Chart(
+            return over_driver(result)(
                 title=f"{name.capitalize()} of the follower at {drive.named}",
-                x=label,
                 y=f"{name}, {unit}",
-                lines=(Line(label=name, x=table[places], y=table[column]),),
-                marks=knots_of(result),
+                lines=(Line(label=name, x=table[result.driver.column], y=table[column]),),
             )
     return None
 
@@ -92,15 +60,14 @@ def _of_lift(name: str, result: CamResult) -> Chart:
     table = result.motion_of_turn
     column = next(column for column in table if column.startswith(name))
     unit = column.removeprefix(f"{name}_").replace("_per_", "/")
-    places, label = places_of(result)
-    lines = [Line(label=name, x=table[places], y=table[column])]
+    lines = [Line(label=name, x=table[result.driver.column], y=table[column])]
     given = result.program.given
     if given is not None and name == "lift":
         theta, lift = given.T
         x, y = result.driver.scale * theta, result.follower.lift_unit[0] * lift
         lines.append(Line(label="given points, before smoothing", x=x, y=y, dots=True))
-    title, unit = f"{name.capitalize()} of the follower", f"{name}, {unit}"
-    return Chart(title=title, x=label, y=unit, lines=(*lines,), marks=knots_of(result))
+    title = f"{name.capitalize()} of the follower"
+    return over_driver(result)(title=title, y=f"{name}, {unit}", lines=(*lines,))
 
 
 def _pressure_angle(result: CamResult) -> Chart | None:
@@ -111,26 +78,22 @@ def _pressure_angle(result: CamResult) -> Chart | None:
     found = pressure_limits(result.follower, given)
     same = found["rise"] == found["return"]
     limits = {"limit" if same else f"limit, {kind}": one for kind, one in found.items()}
-    places, label = places_of(result)
-    return Chart(
+    return over_driver(result)(
         title="Pressure angle",
-        x=label,
         y="pressure angle, deg",
         lines=tuple(
             Line(
                 label=f"cam {one.key}" if one.key else "pressure angle",
-                x=table[places],
-                y=table[column],
+                x=table[result.driver.column],
+                y=table[pressure_column(one)],
             )
             for one in result.cam.motions
-            for column in (pressure_column(one),)
         ),
         limits=tuple(
             Limit(label=label, value=sign * math.degrees(one))
             for label, one in limits.items()
             for sign in (1.0, -1.0)
         ),
-        marks=knots_of(result),
     )
 
 
@@ -165,22 +128,19 @@ def _curvature(result: CamResult) -> Chart:
     for value, wall in rollers.items():
         what = "convex" if wall.side > 0 else "concave"
         limits.append(Limit(label=f"roller ({what} pitch curve)", value=value))
-    places, label = places_of(result)
-    return Chart(
+    return over_driver(result)(
         title="Curvature (positive: convex)",
-        x=label,
         y="curvature, 1/mm",
         lines=tuple(
             Line(
                 label=label if seen.all() else f"{label}, peaks outside this chart",
-                x=table[places],
+                x=table[result.driver.column],
                 y=np.where(seen, values, np.nan),
             )
             for label, values in lines.items()
             for seen in (np.abs(values) <= largest,)
         ),
         limits=tuple(limits),
-        marks=knots_of(result),
     )
 
 
@@ -192,7 +152,7 @@ def _sizes(result: CamResult) -> Chart | None:
         return None
     from gearcam.kinds.cam.solve import region
 
-    return region(result)
+    return region(result.solution)
 
 
 CHARTS: Final[Charts] = {
@@ -281,137 +241,6 @@ def _along(touch: Touch, x: Array) -> tuple[Plane, Array]:
     return points, wall.motion(at)["pressure"]
 
 
-TOOL_RADIUS: Final = "output.tool_radius_mm"
-"""The key of a cutter's radius."""
-
-
-def cutter_way(edge: Contour, radius: float, *, side: int = 1) -> Contour:
-    """Return the path of a cutter's centre along an edge.
-
-    Parameters
-    ----------
-    edge : Contour
-        The edge to cut.
-    radius : float, mm
-        Radius of the cutter; 0 if not given.
-    side : {1, -1}
-        Outside or inside the edge.
-
-    Returns
-    -------
-    Contour
-
-    Raises
-    ------
-    InfeasibleError
-        If there is no radius, or it leaves no simple path.
-    """
-    if not radius:
-        note = "the default is the radius of a round follower; this follower has none"
-        raise InfeasibleError(
-            "the path of a cutter needs the cutter's radius", where=TOOL_RADIUS, nearest=note
-        )
-    return sized(lambda by: moved(edge, side * by), radius, TOOL_RADIUS, "radius of the cutter")
-
-
-def cam_drawing(
-    part: Part,
-    pitch: Contour | Path | None,
-    prime_radius: float | None,
-    follower: Sequence[Shape] = (),
-    *,
-    pose: Pose = UNMOVED,
-    outline: str = PROFILE,
-) -> Drawing:
-    """Return the drawing of a moved cam with its pitch curve, prime circle and follower.
-
-    Parameters
-    ----------
-    part : Part
-        The cam.
-    pitch : Contour, Path or None
-        Its pitch curve, in the part's frame; None if that is the profile.
-    prime_radius : float, mm, or None
-        Radius of the prime circle, for a flat follower of the base circle; None without one.
-    follower : sequence of Shape
-        The follower in its position; may be empty.
-    pose : Pose
-        Where the cam is.
-    outline : str
-        Layer of the part's outline.
-
-    Returns
-    -------
-    Drawing
-        With the name of the part.
-    """
-    moving = list(part_features(part, outline=outline))
-    if pitch is not None:
-        moving.append(Feature(layer=PITCH, shape=pitch))
-    features = list(place(moving, pose))
-    if prime_radius is not None:
-        circle = Circle(center=0j, diameter=2.0 * prime_radius)
-        features.append(Feature(layer=PRIME, shape=circle))
-    features += [Feature(layer=FOLLOWER, shape=shape) for shape in follower]
-    cross = Cross(center=0j, size=CROSS_SIZE * float(np.ptp(part.contour.vertices)))
-    features.append(Feature(layer=CENTER, shape=cross))
-    return Drawing(name=part.name, features=tuple(features))
-
-
-def plate(
-    part: Part, wall: Wall, prime: float, follower: Sequence[Shape] = (), *, angle: float = 0.0
-) -> Drawing:
-    """Return a drawing of a plate, its outline a wall, with the pitch curve (see `cam_drawing`)."""
-    pitch = None if wall.pitch_contour is part.contour else wall.pitch_contour
-    return cam_drawing(part, pitch, prime, follower, pose=Pose(angle))
-
-
-def follower(motion: PitchMotion, theta: float, reach: float) -> list[Shape]:
-    """Return a follower in its position at a cam angle.
-
-    Parameters
-    ----------
-    motion : PitchMotion
-        Its motion.
-    theta : float, rad
-        The cam angle.
-    reach : float, mm
-        Largest radius of the cam, for the size of symbols.
-
-    Returns
-    -------
-    list of Shape
-        In the fixed frame.
-    """
-    touching, side = motion.follower, -1.0 if motion.clockwise else 1.0
-    position = touching.start + float(motion.program.derivatives(theta, 0)[0])
-    reach = 1.2 * reach
-
-    def path(*points: complex) -> Path:
-        return Path(points=np.array([complex(side * z.real, z.imag) for z in points]), closed=False)
-
-    found = motion.contact_place
-    wide = 0.2 * reach + (found.largest if found is not None else 0.0)
-    lines, discs = touching.symbol(position, reach, wide)
-    circles = [
-        Circle(center=complex(side * center.real, center.imag), diameter=2.0 * radius)
-        for center, radius in discs
-    ]
-    return [*circles, *(path(*line) for line in lines)]
-
-
-def grooved(
-    part: Part, walls: Sequence[Wall], follower: Sequence[Shape] = (), *, angle: float = 0.0
-) -> Drawing:
-    """Return a drawing of a disc with a groove, whose first wall is inside (see `cam_drawing`)."""
-    pitch, least = walls[0].pitch_contour, walls[0].follower.prime_radius
-    drawing = cam_drawing(part, pitch, least, follower, pose=Pose(angle), outline=BLANK)
-    # a circle stays a circle in files
-    edge = Circle(center=0j, diameter=2.0 * part.contour.reach)
-    blank, *others = drawing.features
-    return replace(drawing, features=(replace(blank, shape=edge), *others))
-
-
 def scene(result: CamResult, places: int = PLACES) -> Scene:
     """Return cam and follower: the drawing of the cam, divided into rigid bodies.
 
@@ -447,7 +276,10 @@ def scene(result: CamResult, places: int = PLACES) -> Scene:
         MovingBody(
             name=part.name,
             called=f"cam {number}" if several else "cam",
-            features=place(_of_part(plates, part.name if several else ""), back),
+            features=place(
+                [one for one in plates if not several or one.layer.startswith(part.name.upper())],
+                back,
+            ),
             pose=moving,
         )
         for number, part in enumerate(result.parts, start=1)
@@ -455,7 +287,7 @@ def scene(result: CamResult, places: int = PLACES) -> Scene:
     fixed = still(tuple(one for one in shown if one.kind == CENTER), theta)
     return Scene(
         title=result.design.name,
-        driver=f"{driver.called} {driver.symbol}, {driver.unit}",
+        driver=driver.label,
         places=driver.scale * theta,
         closed=not result.program.open,
         start=driver.scale * (pose % (2.0 * math.pi) if carrier.around else pose),
@@ -463,11 +295,6 @@ def scene(result: CamResult, places: int = PLACES) -> Scene:
         contacts=_contacts(result, theta, moving),
         coloured=coloured(result, theta),
     )
-
-
-def _of_part(features: list[Feature], name: str) -> list[Feature]:
-    """Return the features on layers that begin with the name of a part."""
-    return [one for one in features if one.layer.startswith(name.upper())]
 
 
 def _pose(motion: PitchMotion, theta: Array) -> Pose:

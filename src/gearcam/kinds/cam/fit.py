@@ -16,7 +16,6 @@ from gearcam.base.errors import DesignError, Problem
 from gearcam.base.facts import Fact
 from gearcam.base.findings import Finding, run_checks
 from gearcam.base.numerals import formatted
-from gearcam.base.registry import name_of
 from gearcam.cams.checks import FittedMotion
 from gearcam.cams.spec import FITTED
 from gearcam.designs.writing import least_document, toml_text
@@ -24,7 +23,7 @@ from gearcam.kinds.cam.tables import FollowSpec
 from gearcam.laws.columns import ColumnsError, read_rows
 from gearcam.laws.lift_fit import FittedLift, fit_lift
 from gearcam.laws.lift_model import number_of
-from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.laws.motion import MOTION_LAWS
 from gearcam.laws.motion_table import MotionTable, rows_of_turn
 from gearcam.laws.row_checks import stray_in
 from gearcam.numeric.arrays import Array
@@ -34,7 +33,7 @@ if TYPE_CHECKING:
     from gearcam.cams.wall import Wall
     from gearcam.kinds.cam.design import CamDesign
     from gearcam.kinds.cam.result import CamResult
-    from gearcam.results.result import StudyResult
+    from gearcam.results.study import StudyResult
 
 _FORMS: Final = ("disc", "groove", "conjugate")
 """Forms of cams whose phases fill a turn."""
@@ -239,7 +238,7 @@ class FittedDesign:
         facts: dict[str, Any] = {
             "type": word,
             "law": Fact(
-                name_of(MOTION_LAWS, law),
+                MOTION_LAWS.name_of(law),
                 f"{word}, {formatted(start)} to {formatted(end)} deg",
                 shown=True,
                 text=law_text(law) + (" (or " + ", ".join(others) + ")" if others else ""),
@@ -256,7 +255,7 @@ class FittedDesign:
             "rms": float(np.sqrt(np.mean(missed**2))),
             "largest": float(np.abs(missed).max()),
         }
-        return facts | {"alike": [name_of(MOTION_LAWS, one.law) for one in fitted.alike[k]]}
+        return facts | {"alike": [MOTION_LAWS.name_of(one.law) for one in fitted.alike[k]]}
 
     @property
     def page(self) -> bytes:
@@ -285,8 +284,7 @@ class FittedDesign:
         x = driver.scale * rows.theta
         ends = np.degrees(np.concatenate([model.starts, model.ends])) % 360.0
         marks = tuple(MarkedPlace(label="phases", value=one) for one in np.unique(ends).tolist())
-        label = f"{driver.called} {driver.symbol}, {driver.unit}"
-        chart = partial(Chart, x=label, marks=marks)
+        chart = partial(Chart, x=driver.label, marks=marks)
         noise = 2.0 * scale * rows.noise
         fitted = Line(label="fitted design", x=x, y=self.columns["s_fitted"])
         return {
@@ -314,7 +312,7 @@ def _error(value: float, meaning: str, **more: Any) -> Fact:
 
 def law_text(law: Any) -> str:
     """Return the name of a motion law, with its number if it has one that is not the default."""
-    name, known = name_of(MOTION_LAWS, law), number_of(law)
+    name, known = MOTION_LAWS.name_of(law), number_of(law)
     if known is None or law == type(law)():
         return name
     return f"{name} with {known[0]} = {formatted(getattr(law, known[0]), 4)}"

@@ -8,50 +8,48 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.base.facts import Fact, extent
+from gearcam.base.facts import Fact, Tree, extent
 from gearcam.base.findings import limit_of, run_checks
 from gearcam.base.numerals import formatted, shortened
 from gearcam.base.quantities import TORQUE
 from gearcam.cams.follower_loads import Loads
 from gearcam.cams.force_checks import Loaded, on_way
 from gearcam.cams.spec import FORCES
-from gearcam.cams.statics import Statics
-from gearcam.kinds.cam.drawn import knots_of, places_of
+from gearcam.kinds.cam.charts import over_driver
 from gearcam.kinds.cam.hints import enlarged
-from gearcam.kinds.cam.under_load import efficiency_away_from_rest, pressure_of, under_load
+from gearcam.kinds.cam.under_load import UnderLoad, efficiency_away_from_rest
 from gearcam.mechanics.hertz import half_width
 from gearcam.pictures.charts import Chart, Limit, Line
-from gearcam.results.result import StudyResult
+from gearcam.results.study import StudyResult
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from gearcam.kinds.cam.result import CamResult
     from gearcam.numeric.arrays import Array, Ints
-    from gearcam.results.kind import Study
-    from gearcam.results.result import Progress
-
-Tree = dict[str, Any]
+    from gearcam.results.study import Progress
 
 _MIRRORED: Final = (
-    "guide_n", "guide_moment_nmm", "guide_low_n", "guide_high_n", "pivot_x_n",
-)  # fmt: skip
+    "guide_n",
+    "guide_moment_nmm",
+    "guide_low_n",
+    "guide_high_n",
+    "pivot_x_n",
+)
 """Reactions that change their sign in the mirror image, which a cam that turns clockwise is."""
 
 _NOISE: Final = 1e-9
 """Share of the largest force that is 0: where another wall begins to carry little is left."""
 
 
-def study_forces(result: CamResult, study: Study, progress: Progress | None) -> StudyResult:
+def study_forces(result: CamResult, progress: Progress) -> StudyResult:
     """Return the study of the forces of a cam (see `gearcam.cams.statics`).
 
     Parameters
     ----------
     result : CamResult
         The cam.
-    study : Study
-        The entry of the study.
-    progress : callable, optional
+    progress : Progress
         Called with what is computed, the number done and their total.
 
     Returns
@@ -64,13 +62,14 @@ def study_forces(result: CamResult, study: Study, progress: Progress | None) -> 
     InfeasibleError
         If the cam is impossible, or no stiffness keeps the follower on it.
     """
-    if progress is not None:
-        progress("forces", 0, 1)
+    progress("forces", 0, 1)
     design, cam = result.design, result.cam
     with result.stage("forces"):
-        loads, x, way, statics = under_load(result)
-        pressure = pressure_of(result, statics)
-        per_width = statics.force / result.form.contact_width
+        under = UnderLoad(result)
+        loads, (x, way) = under.loads, under.to_and_fro(result.places_under_load)
+        statics = under.statics(x, way)
+        pressure = under.pressure(statics)
+        per_width = statics.force / result.contact_width
         half = half_width(per_width, statics.curvature, design.material)
         width = np.where(np.isinf(pressure), np.nan, half)
         only_presses = len(cam.touches) == 1
@@ -94,7 +93,7 @@ def study_forces(result: CamResult, study: Study, progress: Progress | None) -> 
     columns = _columns(result, loaded, width)
     return StudyResult(
         result=result,
-        study=study,
+        study=result.kind.studies["forces"],
         file="forces.csv",
         table=columns,
         group=_facts(result, loads, loaded, release),
@@ -108,32 +107,26 @@ def _holding(loads: Loads) -> str:
     lack = loads.lack
     if not loads.springs or lack <= 0.0:
         return ""
-    key, scale = ("preload_nm", 1e-3) if loads.follower.angular else ("preload_n", 1.0)
+    scale, _, suffix = loads.follower.load_unit
     force = loads.springs[0].force
     given = loads.solved.get("preload", 0.0) if force == "solve" else float(force)
     least = shortened(scale * (given + lack), scale * lack, 3)
-    return f"spring[0].{key} = {formatted(least)}"
-
-
-def _effort(result: CamResult) -> tuple[str, float]:
-    """Return name and factor of the column of loads."""
-    return ("load_nm", 1e-3) if result.follower.angular else ("load_n", 1.0)
+    return f"spring[0].preload_{suffix} = {formatted(least)}"
 
 
 def _columns(result: CamResult, loaded: Loaded, width: Array) -> dict[str, Array]:
     """Return the columns of ``forces.csv``."""
     x, statics, pressure = loaded.x, loaded.statics, loaded.pressure
     driver, drive, motion = result.driver, result.design.drive, result.cam.motions[0]
-    (load, load_scale), (effort, scale) = _effort(result), drive.effort
-    sign = -1.0 if motion.clockwise else 1.0
+    (load_scale, _, suffix), (effort, scale) = result.follower.load_unit, drive.effort
     columns = {
         driver.column: driver.scale * x,
         **({} if loaded.way is None else {"direction": loaded.way.astype(int)}),
-        load: load_scale * statics.against,
+        f"load_{suffix}": load_scale * statics.against,
         "normal_n": statics.force,
         "wall": statics.carrying + 1,
         **{
-            name: (sign if name in _MIRRORED else 1.0) * values
+            name: (motion.hand if name in _MIRRORED else 1.0) * values
             for name, values in statics.reactions.items()
         },
         "bearing_n": np.abs(statics.bearing),
@@ -170,6 +163,7 @@ def _facts(
     statics, design = loaded.statics, result.design
     effort, scale = design.drive.effort
     without = design.follower.without_friction(design.friction)
+    walls = statics.carrying[statics.carrying >= 0]
     tree: Tree = {
         "normal_n": _extreme(
             loaded, np.where(statics.lifted, 0.0, statics.force), "normal force", "N"
@@ -185,7 +179,7 @@ def _facts(
         **_largest_pressure(loaded),
         "locked": bool(statics.locked.any()),
         "lifted": bool(statics.lifted.any()),
-        "reversals": _reversals(statics),
+        "reversals": int(np.count_nonzero(np.diff(walls))) or None,
         "spring": _spring(loads) or None,
         "friction": Fact(", ".join(without), "friction left out", shown=True) if without else None,
     }
@@ -249,24 +243,15 @@ def _integral(x: Array, y: Array) -> float:
     return float(np.sum(0.5 * (y[1:] + y[:-1]) * np.abs(np.diff(x))))
 
 
-def _reversals(statics: Statics) -> int | None:
-    """Return how often the follower changes walls; None with one wall."""
-    walls = statics.carrying[statics.carrying >= 0]
-    changes = int(np.count_nonzero(np.diff(walls)))
-    return changes or None
-
-
 def _spring(loads: Loads) -> Tree:
     """Return the solved values of springs as facts."""
-    swings, made = loads.follower.angular, {}
-    names = {"preload": "preload_nm", "stiffness": "stiffness_nm_rad"}
-    scale = 1e-3
-    if not swings:
-        names, scale = {"preload": "preload_n", "stiffness": "stiffness_n_mm"}, 1.0
-    for what, value in loads.solved.items():
-        label = f"least {what} of the spring"
-        made[names[what]] = Fact(scale * value, label, shown=True)
-    return made
+    scale, _, suffix = loads.follower.load_unit
+    per = "rad" if loads.follower.angular else "mm"
+    names = {"preload": f"preload_{suffix}", "stiffness": f"stiffness_{suffix}_{per}"}
+    return {
+        names[what]: Fact(scale * value, f"least {what} of the spring", shown=True)
+        for what, value in loads.solved.items()
+    }
 
 
 TITLES: Final = {
@@ -312,7 +297,7 @@ def _along(result: CamResult, loaded: Loaded, columns: Mapping[str, Any]) -> Cha
 
 def _charts(result: CamResult, loaded: Loaded, columns: Mapping[str, Any]) -> dict[str, Chart]:
     """Return charts of forces over the driver, and of the pressure along the profile."""
-    column, label = places_of(result)
+    chart, column = over_driver(result), result.driver.column
     given = result.design.limits
     limits = {
         "pressure_mpa": limit_of(FORCES, "contact-pressure", given),
@@ -324,9 +309,8 @@ def _charts(result: CamResult, loaded: Loaded, columns: Mapping[str, Any]) -> di
         if values is None or not np.isfinite(values).any():
             continue
         most = limits.get(name)
-        charts[name.partition("_")[0]] = Chart(
+        charts[name.partition("_")[0]] = chart(
             title=title,
-            x=label,
             y=axis,
             lines=tuple(
                 Line(
@@ -337,7 +321,6 @@ def _charts(result: CamResult, loaded: Loaded, columns: Mapping[str, Any]) -> di
                 for way, rows in _on_each_way(loaded)
             ),
             limits=(Limit(label="limit", value=most),) if most else (),
-            marks=knots_of(result),
         )
     along = _along(result, loaded, columns)
     return charts if along is None else charts | {"profile_pressure": along}

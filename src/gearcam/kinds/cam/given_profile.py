@@ -1,14 +1,16 @@
-"""The inverse problem: the motion of the design's follower on a given profile."""
+"""The inverse problem: the motion of the design's follower on a given profile, and its study."""
 
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gearcam.base.errors import DesignError, Problem
 from gearcam.base.facts import Fact
 from gearcam.base.findings import Finding, Limits, run_checks
 from gearcam.cams.follow import follow
@@ -18,6 +20,13 @@ from gearcam.numeric.arguments import points
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.bulges import flatten_bulges
 from gearcam.results.outline_file import read_closed, straight
+from gearcam.results.study import StudyResult
+
+if TYPE_CHECKING:
+    from gearcam.kinds.cam.result import CamResult
+    from gearcam.results.study import Progress
+
+_FILE: Final = "followed.csv"
 
 _SAGITTA = 0.01
 """Chord error of flattened arcs, in chord tolerances of the design."""
@@ -146,3 +155,113 @@ def compared(wall: Wall, theta: Array, lift: Array) -> tuple[dict[str, Array], d
         "rms_difference": float(np.sqrt(np.mean(difference**2))),
     }
     return columns, facts
+
+
+def study_follow(result: CamResult, progress: Progress, **given: Any) -> StudyResult:
+    """Return the study of a profile.
+
+    Parameters
+    ----------
+    result : CamResult
+        The cam.
+    progress : Progress
+        Called with what is computed, the number done and their total.
+    **given
+        The arguments of `CamResult.follow`; by default the settings of the design.
+    """
+    spec = result.design.follow
+    asked = given or {"profile": spec.file or "", "wall": spec.wall, "fit": spec.fit}
+    return _follow(result, progress, **asked)
+
+
+def demand(design: Any) -> None:
+    """Refuse a design without a profile, or one of which none can be fitted.
+
+    Raises
+    ------
+    DesignError
+    """
+    if design.follow.fit:
+        from gearcam.kinds.cam.fit import demand_fit
+
+        demand_fit(design)
+    if design.follow.file is None:
+        rule = "a DXF or CSV file of a closed profile"
+        problem = Problem("is missing", file=design.source, key="follow.file", allowed=rule)
+        raise DesignError([problem])
+
+
+def _follow(
+    result: CamResult,
+    progress: Progress,
+    profile: str | Path | ArrayLike,
+    wall: str | None = None,
+    *,
+    fit: bool = False,
+) -> StudyResult:
+    """Return the motion of a cam's follower on a given profile (see `CamResult.follow`)."""
+    if fit:
+        return _fit(result, progress, profile, wall)
+    chosen = result.wall(wall)
+    progress("profile", 0, 2)
+    outline, bulges = read_profile(profile, chosen)
+    progress("follow", 1, 2)
+    with result.stage("follow"):
+        limits = result.design.limits
+        columns, facts, found = followed(chosen, outline, bulges, result.angles, limits)
+    return StudyResult(
+        result=result,
+        study=result.kind.studies["follow"],
+        file=_FILE,
+        table=columns,
+        group=facts,
+        study_findings=found,
+    )
+
+
+def _fit(
+    result: CamResult,
+    progress: Progress,
+    profile: str | Path | ArrayLike,
+    wall: str | None,
+) -> StudyResult:
+    """Return the same with the design that has this motion."""
+    from gearcam.kinds.cam import fit as fitting
+
+    fitting.demand_fit(result.design)
+    chosen = result.wall(wall)
+    rows = fitting.read_lift(profile, chosen)
+    if rows is None:
+        study = _follow(result, progress, profile, wall)
+        columns, found = fitting.of_turn(study), study.study_findings
+        facts: dict[str, Any] = dict(study.group)
+        scale = chosen.follower.lift_unit[0]
+        theta, lift = np.radians(columns["theta_deg"]), columns["s"] / scale
+        chords = float(np.sqrt(np.mean(columns["error"] ** 2))) / scale
+        # arcs and splines are as far from the true curve as their tolerance allows
+        error = max(chords, chosen.tolerance / chosen.follower.lever)
+    else:
+        (theta, lift), found, error = rows, (), None
+        columns, facts = compared(chosen, theta, lift)
+    progress("fit", 0, 1)
+    with result.stage("fit"):
+        one = fitting.fit(result, chosen, theta, lift, error=error, source=profile)
+        columns, facts = columns | one.columns, facts | {"fit": one.facts}
+    # the motion of the given design stands only for another one
+    facts |= {"largest_difference": replace(facts["largest_difference"], shown=False)}
+    found = tuple(finding for finding in found if finding.code != "other-profile")
+    study = StudyResult(
+        result=one.named_as_given,
+        study=result.kind.studies["follow"],
+        file=_FILE,
+        table=columns,
+        group=facts,
+        study_findings=(*found, *one.findings),
+        drawn=one.charts,
+        pages={fitting.FILE: one.page},
+    )
+    # the headline of a build is that of the given design; that of the study itself is this one
+    _, *sizes = one.named_as_given.design_facts.headline
+    fit = {"design": Fact(", ".join(sizes), "fitted design", shown=True), **facts["fit"]}
+    lines = tuple(study.facts.lines(f"{study.study.key}."))
+    return replace(study, group=facts | {"fit": fit}, lines=lines)

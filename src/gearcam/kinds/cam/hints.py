@@ -26,7 +26,7 @@ from gearcam.results.advice import Advice, kerf_paths
 if TYPE_CHECKING:
     from gearcam.cams.cam import Cam
     from gearcam.cams.wall import PitchMotion
-    from gearcam.kinds.cam.result import CamResult
+    from gearcam.kinds.cam.made import MadeCam
     from gearcam.results.advice import Search
 
 _MOST: Final = 100.0
@@ -51,12 +51,12 @@ _SHARES: Final = (0.4, 0.5, 0.65, 0.8, 1.0)
 of it beside the lift, and a much larger tolerance takes more from the lift than scatter did."""
 
 
-def hinted(result: CamResult, findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
+def hinted(result: MadeCam, findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
     """Return findings; their messages say with which values they disappear.
 
     Parameters
     ----------
-    result : CamResult
+    result : MadeCam
         Of the cam.
     findings : tuple of Finding
         Of its checks.
@@ -79,12 +79,12 @@ def hinted(result: CamResult, findings: tuple[Finding, ...]) -> tuple[Finding, .
     )
 
 
-def gentler(result: CamResult, code: str, number: int = 0) -> dict[str, float] | None:
+def gentler(result: MadeCam, code: str, number: int = 0) -> dict[str, float] | None:
     """Return the smallest radius with which a motion has no finding of a code.
 
     Parameters
     ----------
-    result : CamResult
+    result : MadeCam
         Of the cam.
     code : str
         ``pressure-angle`` or ``jamming``.
@@ -113,7 +113,7 @@ def gentler(result: CamResult, code: str, number: int = 0) -> dict[str, float] |
 
 
 def _first_that_keeps(
-    result: CamResult, code: str, number: int, start: float
+    result: MadeCam, code: str, number: int, start: float
 ) -> dict[str, float] | None:
     """Return the changes for the smallest radius, from `start`, mm, in the digits printed."""
     step = 10.0 ** (math.floor(math.log10(start)) + 1 - DIGITS)
@@ -150,12 +150,12 @@ def _slope(angle: float | None) -> float:
     return math.tan(math.radians(angle or 0.0))
 
 
-def resized(result: CamResult, number: int, size: float) -> dict[str, float]:
+def resized(result: MadeCam, number: int, size: float) -> dict[str, float]:
     """Return the changes that give a motion another prime radius.
 
     Parameters
     ----------
-    result : CamResult
+    result : MadeCam
         Of the cam.
     number : int
         Which of its motions.
@@ -196,7 +196,7 @@ def grown(document: Mapping[str, Any], key: str, size: float) -> dict[str, float
     return {key: size, "cam.outer_diameter_mm": float(f"{wider:.10g}")}
 
 
-def _sentence(result: CamResult, code: str, number: int) -> str:
+def _sentence(result: MadeCam, code: str, number: int) -> str:
     """Return what keeps the limit of a check, in words."""
     changes = gentler(result, code, number)
     if changes is not None:
@@ -216,7 +216,7 @@ def _sentence(result: CamResult, code: str, number: int) -> str:
     )
 
 
-def _rounder(result: CamResult) -> tuple[str, ...]:
+def _rounder(result: MadeCam) -> tuple[str, ...]:
     """Return a sentence with each size that alone keeps all limits, or none."""
     if not result.form.solvable or result.cam.least_base_radius is not None:
         return ()  # of a face the check itself names the radius
@@ -233,12 +233,12 @@ def _rounder(result: CamResult) -> tuple[str, ...]:
     return (f"With {' or '.join(found)} it keeps all limits.",) if found else ()
 
 
-def enlarged(result: CamResult, findings: Iterable[Finding]) -> tuple[Finding, ...]:
+def enlarged(result: MadeCam, findings: Iterable[Finding]) -> tuple[Finding, ...]:
     """Return findings of a study of forces; a contact pressure names the cam that keeps its limit.
 
     Parameters
     ----------
-    result : CamResult
+    result : MadeCam
         Of the cam.
     findings : iterable of Finding
         Of the study.
@@ -261,14 +261,14 @@ def enlarged(result: CamResult, findings: Iterable[Finding]) -> tuple[Finding, .
     return tuple(found)
 
 
-def _motion_of(result: CamResult, finding: Finding) -> int:
+def _motion_of(result: MadeCam, finding: Finding) -> int:
     """Return which of a cam's motions a finding is about."""
     keyed = (k for k, one in enumerate(result.cam.motions) if one.key)
     motions = result.cam.motions
     return next((k for k in keyed if finding.where.startswith(motions[k].called)), 0)
 
 
-def _steep(result: CamResult, code: str, number: int, cam: Cam | None = None) -> Iterator[Finding]:
+def _steep(result: MadeCam, code: str, number: int, cam: Cam | None = None) -> Iterator[Finding]:
     """Yield the findings of a code about one motion of a result's cam, or of another `cam`."""
     limit = limit_of(KIND, code, result.design.limits)
     for finding in CHECKS[KIND, code].run(cam or result.cam, limit):
@@ -289,7 +289,7 @@ def _need(motion: PitchMotion) -> float:
     return follower.lever * (high - low) + follower.aside + follower.radius
 
 
-def _least(result: CamResult, motion: PitchMotion, code: str, limit: float) -> float | None:
+def _least(result: MadeCam, motion: PitchMotion, code: str, limit: float) -> float | None:
     """Return the least radius, mm, that keeps a limit, rad, at many cam angles."""
     follower, (bottom, top) = motion.follower, motion.program.range
     survey = motion.program.survey
@@ -309,7 +309,7 @@ def _least(result: CamResult, motion: PitchMotion, code: str, limit: float) -> f
     return least if least <= _MOST * _need(motion) else None
 
 
-def _smoother(result: CamResult, finding: Finding) -> Iterator[str]:
+def _smoother(result: MadeCam, finding: Finding) -> Iterator[str]:
     """Yield values with which the rows of a motion table are not coarser than the profile."""
     table, lead, error = result.design.motion, result.cam.motions[0], finding.value or 0.0
     if isinstance(table, MotionTable) and lead.program.fall < _SCATTERED:
@@ -345,7 +345,7 @@ _SMALLER: Final = 0.01
 
 _ALSO: Final[Mapping[str, Callable[[Any], object]]] = {
     "csv": lambda result: result.angles,
-    "tool-path": lambda result: result.form.paths(result.design.output.tool_radius),
+    "tool-path": lambda result: result.paths(),
     "dxf": kerf_paths,
     "cut-svg": kerf_paths,
     "curvature": lambda result: result.files("curvature"),

@@ -1,7 +1,7 @@
 """The motion of a cam: an array ``[[motion]]`` of phases, or a table ``[motion]`` of the turn.
 
 Each phase has the keys of its type and of its law. A rise and a return have a ``law`` of the
-registry `gearcam.laws.motion.base.MOTION_LAWS`, whose parameters are further keys of the phase. The
+registry `gearcam.laws.motion.MOTION_LAWS`, whose parameters are further keys of the phase. The
 whole turn is given by a formula, ``lift``, or by rows. `MOTION` is what all kinds take whose
 designs have a motion, with its `circumstances`.
 """
@@ -17,7 +17,7 @@ from gearcam.designs.faults import Fault, quoted, show
 from gearcam.designs.nodes import Case, Choice, Circumstances, Either, Item, Keys, Many
 from gearcam.designs.table import table_of
 from gearcam.kinds.cam.forms.base import FORMS, VARIANTS
-from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.laws.motion import MOTION_LAWS
 from gearcam.laws.phases_of_lift import (
     PHASES,
     Phase,

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.base.facts import Fact
+from gearcam.base.facts import Fact, Tree
 from gearcam.base.findings import Finding, run_checks
-from gearcam.base.quantities import ANGLE, Quantity
+from gearcam.base.quantities import ANGLE
 from gearcam.cams.precision import (
     COMBINED,
     Largest,
@@ -21,19 +21,18 @@ from gearcam.cams.precision import (
     sensitivities,
 )
 from gearcam.cams.spec import PRECISION
+from gearcam.kinds.cam.charts import over_driver
 from gearcam.kinds.cam.tables import SIZES, PrecisionSpec
 from gearcam.numeric.piecewise import with_both_sides
-from gearcam.pictures.charts import Chart, Limit, Line, knot_marks
-from gearcam.results.result import StudyResult
+from gearcam.pictures.charts import Chart, Limit, Line
+from gearcam.results.study import StudyResult
 
 if TYPE_CHECKING:
     from gearcam.cams.cam import Cam
+    from gearcam.cams.wall import Wall
     from gearcam.kinds.cam.result import CamResult
     from gearcam.numeric.arrays import Array
-    from gearcam.results.kind import Study
-    from gearcam.results.result import Progress
-
-Tree = dict[str, Any]
+    from gearcam.results.study import Progress
 
 _COMBINATIONS: Final = {"worst_case": added, "root_of_squares": rooted}
 
@@ -41,23 +40,14 @@ _NO_INFLUENCE: Final = 1e-12
 """Sensitivity, mm per mm or rad per rad, that is rounding only."""
 
 
-class _Values(NamedTuple):
-    """Sensitivities on a wall, with the wall's key."""
-
-    key: str
-    by_size: dict[str, Array]
-
-
-def study_precision(result: CamResult, study: Study, progress: Progress | None) -> StudyResult:
+def study_precision(result: CamResult, progress: Progress) -> StudyResult:
     """Return the study of the precision of a cam (see `gearcam.cams.precision`).
 
     Parameters
     ----------
     result : CamResult
         The cam.
-    study : Study
-        The entry of the study.
-    progress : callable, optional
+    progress : Progress
         Called with what is computed, the number done and their total.
 
     Returns
@@ -68,22 +58,20 @@ def study_precision(result: CamResult, study: Study, progress: Progress | None) 
     with result.stage("precision"):
         values = _values(cam, theta)
         most: dict[str, Largest] = {}
-        sizes = dict.fromkeys(size for one in values for size in one.by_size)
+        sizes = dict.fromkeys(size for _, by_size in values for size in by_size)
         for number, size in enumerate(sizes):
-            if progress is not None:
-                progress("precision", number, len(sizes))
+            progress("precision", number, len(sizes))
             found = largest(cam, lambda by_size, size=size: _of(by_size, size))
             if found is not None:
                 most[size] = found
         facts = _facts(cam, spec, most)
         findings = _findings(cam, spec)
-    driver, (scale, unit) = result.driver, result.follower.lift_unit
-    columns = {driver.column: driver.scale * theta}
-    for one in values:
-        columns |= _columns(one, spec, scale, unit)
+    columns = {result.driver.column: result.driver.scale * theta}
+    for wall, by_size in values:
+        columns |= _columns(wall, by_size, spec)
     return StudyResult(
         result=result,
-        study=study,
+        study=result.kind.studies["precision"],
         file="precision.csv",
         table=columns,
         group=facts,
@@ -92,8 +80,9 @@ def study_precision(result: CamResult, study: Study, progress: Progress | None) 
     )
 
 
-def _values(cam: Cam, theta: Array) -> list[_Values]:
-    return [_Values(wall.key, sensitivities(wall, cam.linked(wall), theta)) for wall in cam.walls]
+def _values(cam: Cam, theta: Array) -> list[tuple[Wall, dict[str, Array]]]:
+    """Return the sensitivities on each wall, by size."""
+    return [(wall, sensitivities(wall, cam.linked(wall), theta)) for wall in cam.walls]
 
 
 def _of(by_size: Mapping[str, Array], size: str) -> Array:
@@ -162,7 +151,7 @@ def _size_facts(
             value,
             f"largest sensitivity to {words}",
             place=found.place,
-            unit=_per(unit, quantity),
+            unit=f"{unit}/{quantity.unit}",
             shown=not tolerance and not allowed,
         ),
         f"deviation_{unit}": scale * found.value * tolerance,
@@ -176,10 +165,6 @@ def _size_facts(
     return tree
 
 
-def _per(unit: str, quantity: Quantity) -> str:
-    return f"{unit}/{quantity.unit}"
-
-
 def _findings(cam: Cam, spec: PrecisionSpec) -> tuple[Finding, ...]:
     if spec.wanted is None or not spec.tolerances:
         return ()
@@ -189,17 +174,15 @@ def _findings(cam: Cam, spec: PrecisionSpec) -> tuple[Finding, ...]:
     return run_checks(PRECISION, LiftError(found, spec.wanted, spec.combined), {})
 
 
-def _columns(values: _Values, spec: PrecisionSpec, scale: float, unit: str) -> dict[str, Array]:
+def _columns(wall: Wall, by_size: Mapping[str, Array], spec: PrecisionSpec) -> dict[str, Array]:
     """Return the columns of ``precision.csv`` for a wall."""
-    key = f"_{values.key}" if values.key else ""
-    columns = {}
-    for size, each in values.by_size.items():
+    (scale, unit), key, columns = wall.follower.lift_unit, wall.ending, {}
+    for size, each in by_size.items():
         quantity = SIZES[size].quantity
         columns[f"by_{size}{key}_{unit}_per{quantity.suffix}"] = scale * quantity.factor * each
-    errors = _known(values.by_size, spec.tolerances)
-    if errors:
-        for name, how in _COMBINATIONS.items():
-            columns[f"{name}{key}_{unit}"] = scale * how(values.by_size, errors)
+    errors = _known(by_size, spec.tolerances)
+    for name, how in _COMBINATIONS.items() if errors else ():
+        columns[f"{name}{key}_{unit}"] = scale * how(by_size, errors)
     return {name: np.ma.masked_invalid(column) for name, column in columns.items()}
 
 
@@ -211,9 +194,9 @@ def _charts(result: CamResult) -> dict[str, Chart]:
     scale, unit = result.follower.lift_unit
     x, groups = driver.scale * turn, {"mm": [], "deg": []}
     deviations: list[Line] = []
-    for one in _values(result.cam, turn):
-        on = f", {one.key}" if one.key else ""
-        for size, each in one.by_size.items():
+    for wall, by_size in _values(result.cam, turn):
+        on = f", {wall.key}" if wall.key else ""
+        for size, each in by_size.items():
             quantity, label = SIZES[size].quantity, f"{size.replace('_', ' ')}{on}"
             if np.nanmax(np.abs(each), initial=0.0) > _NO_INFLUENCE:
                 values = scale * quantity.factor * each
@@ -221,30 +204,24 @@ def _charts(result: CamResult) -> dict[str, Chart]:
                 if size in spec.tolerances:
                     values = scale * each * spec.tolerances[size]
                     deviations.append(Line(label=label, x=x, y=values))
-        errors = _known(one.by_size, spec.tolerances)
+        errors = _known(by_size, spec.tolerances)
         for name, how in _COMBINATIONS.items() if errors else ():
             label = f"{name.replace('_', ' ')}{on}"
-            deviations.append(Line(label=label, x=x, y=scale * how(one.by_size, errors)))
-    common = {
-        "x": f"{driver.called} {driver.symbol}, {driver.unit}",
-        "marks": knot_marks(driver.scale * np.asarray(program.knots), 0.0, driver.whole),
-    }
-    charts = {}
+            deviations.append(Line(label=label, x=x, y=scale * how(by_size, errors)))
+    chart, charts = over_driver(result), {}
     if deviations:
         ends = () if spec.wanted is None else (scale * spec.wanted, -scale * spec.wanted)
-        charts["precision"] = Chart(
+        charts["precision"] = chart(
             title="Deviation of the lift by the tolerances",
             y=f"deviation, {unit}",
             lines=tuple(deviations),
             limits=tuple(Limit(label="wanted", value=end) for end in ends),
-            **common,
         )
     for per, lines in groups.items():
         if lines:
-            charts[f"sensitivity_{per}"] = Chart(
+            charts[f"sensitivity_{per}"] = chart(
                 title=f"Sensitivity of the lift to {'angles' if per == ANGLE.unit else 'lengths'}",
                 y=f"lift per error, {unit}/{per}",
                 lines=tuple(lines),
-                **common,
             )
     return charts

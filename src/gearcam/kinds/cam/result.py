@@ -1,56 +1,45 @@
-"""The result of a cam: lift program, cam, profile, checks, parts, and error estimates."""
+"""The result of a cam: its sizes, tables over the driver, checks, and error estimates."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Final
+from typing import TYPE_CHECKING, ClassVar, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.base.errors import ABOVE, beyond_limit
 from gearcam.base.findings import Finding, in_order, run_checks
 from gearcam.cams.carriers import ROUNDING
 from gearcam.cams.checks import KIND
 from gearcam.kinds.cam.design import CamDesign
-from gearcam.kinds.cam.forms.base import FORMS, Form
+from gearcam.kinds.cam.made import MadeCam
 from gearcam.kinds.shared import solved_file
 from gearcam.laws.program import Program
 from gearcam.numeric.arguments import angles, one_of
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
-from gearcam.numeric.contour import Contour
 from gearcam.numeric.perturbation import EPS, Perturb, largest_changes, perturbed_sizes
 from gearcam.numeric.piecewise import with_both_sides
-from gearcam.numeric.pose import Pose
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.mass import quadrature_error
-from gearcam.results.parts import CHORDS, Estimates, PartsResult
+from gearcam.results.parts import CHORDS, Estimates
+from gearcam.results.study import silent
 
 if TYPE_CHECKING:
     from gearcam.cams.cam import Cam
-    from gearcam.cams.carriers import Carrier, DriverAxis
-    from gearcam.cams.followers import Follower
     from gearcam.cams.wall import PitchMotion, Wall
     from gearcam.kinds.cam.solve import Solution
-    from gearcam.laws.columns import Given
     from gearcam.numeric.arrays import Ints, Plane
-    from gearcam.parts.body import Part
-    from gearcam.parts.checks import CheckedParts
-    from gearcam.pictures.drawings import Drawing
-    from gearcam.results.result import Progress, StudyResult
+    from gearcam.results.study import Progress, StudyResult
 
 _HINTED: Final = ("pressure-angle", "jamming", "sharp-profile", "undercut", "coarse-rows")
 """Findings whose messages name values that help."""
 
-_MOST_STEPS: Final = 1e6
-"""Largest number of steps of a table."""
 
-
-class CamResult(PartsResult):
+class CamResult(MadeCam):
     """Result of the design of a cam, computed on demand.
 
     Parameters
@@ -69,20 +58,12 @@ class CamResult(PartsResult):
     62.0
     """
 
-    design: CamDesign
-    before_output = ("program",)
     stages: ClassVar[Mapping[str, str]] = {
         "program": "program",
         "cam": "cam",
         "profile": "profile",
         "checks": "checked",
     }
-
-    @cached_property
-    def program(self) -> Program:
-        """The lift over a turn."""
-        with self.stage("program"):
-            return self.form.program()
 
     @cached_property
     def solution(self) -> Solution | None:
@@ -104,67 +85,10 @@ class CamResult(PartsResult):
         """The design with the sizes that it asks for, as a file (see `Result.more_files`)."""
         return {} if self.solution is None else solved_file(self.solution.design)
 
-    @cached_property
-    def form(self) -> Form[Any, Any, Any]:
-        """What is special to the form of the cam."""
-        return FORMS[self.design.form](self)
-
-    @cached_property
-    def cam(self) -> Cam:
-        """The cam; its curves and measures are computed on demand."""
-        program = self.program
-        with self.stage("cam"), self.naming_rows():
-            return self.form.make(program)
-
-    @property
-    def given_rows(self) -> list[tuple[str, Given]]:
-        """The rows of tables that should lie on curves (see `Result`)."""
-        return self._given_rows(oscillating=self.design.follower.oscillating)
-
-    @property
-    def follower(self) -> Follower:
-        """The follower; for conjugate cams that on the first."""
-        return self.cam.motions[0].follower
-
-    @property
-    def driver(self) -> DriverAxis:
-        """Name and unit of the cam's angle or travel in output."""
-        return self.carrier.driver
-
-    @property
-    def carrier(self) -> Carrier:
-        """What the cam does beneath its follower."""
-        return self.cam.motions[0].carrier
-
-    @cached_property
-    def profiles(self) -> tuple[Contour, ...]:
-        """The walls, counter-clockwise, in the cam's frame, in the order of `Cam.walls`."""
-        cam = self.cam
-        with self.stage("profile"):
-            return tuple(wall.contour for wall in cam.walls)
-
-    @property
-    def profile(self) -> Contour:
-        """The first wall: for a disc cam the profile."""
-        return self.profiles[0]
-
-    @property
-    def angles(self) -> Array:
-        """The cam angles of tables, rad, in steps of the design, both ends; or travels, mm.
-
-        Raises
-        ------
-        InfeasibleError
-            If there are more than a million.
-        """
-        period, driver = self.program.period, self.driver
-        key, step = self.form.step
-        if step < (least := period / _MOST_STEPS):
-            what, scale = f"tables would have more than {_MOST_STEPS:.0f} rows", driver.scale
-            note, near = "the limit is the smallest step", ABOVE * least * scale
-            value, limit, unit = step * scale, least * scale, driver.unit
-            raise beyond_limit(what, key, value, limit, note, near=near, unit=unit)
-        return self.carrier.places(step, period)
+    def wall(self, key: str | None) -> Wall:
+        """Return the wall with a key; by default the first."""
+        walls = {one.key: one for one in self.cam.walls}
+        return walls[next(iter(walls)) if key is None else one_of("wall", key, tuple(walls))]
 
     def motion(self, theta: ArrayLike | None = None) -> Columns:
         """Return the exact motion of the follower, pressure angle and radii of curvature.
@@ -234,62 +158,6 @@ class CamResult(PartsResult):
             columns[rho_column("profile", wall)] = wall.radii(theta)
         return Columns(columns)
 
-    @property
-    def ordered(self) -> bool:
-        """Whether the design needs a part: a blank, or files of parts."""
-        plain = {"csv", "curvature", "inspection"}
-        blank = self.design.blank
-        described = any(getattr(blank, one.name) != one.default for one in fields(blank))
-        return described or not set(self.design.output.files) <= plain
-
-    @cached_property
-    def parts(self) -> tuple[Part, ...]:
-        """The cam as one or several parts."""
-        profiles = self.profiles  # a separate stage
-        with self.stage("part"):
-            return self.form.parts() if profiles else ()
-
-    @property
-    def part(self) -> Part:
-        """The cam as a part, or its first part, with bore, hub, holes and clearance."""
-        return self.parts[0]
-
-    @property
-    def plates(self) -> tuple[Drawing, ...]:
-        """A drawing of each part with its curves, in its own frame."""
-        return self.form.drawings()
-
-    @property
-    def references(self) -> tuple[Drawing, ...]:
-        """The parts with their curves, beside cutting paths that are offset by the kerf."""
-        if not self.design.output.kerf:
-            return ()
-        return tuple(replace(one, name=f"{one.name}_reference") for one in self.plates)
-
-    @property
-    def assembly(self) -> str:
-        """Stem of the files of the assembled cams; empty for a single part."""
-        return "cams" if len(self.parts) > 1 else ""
-
-    @property
-    def poses(self) -> tuple[Pose, ...]:
-        """Where each cam is on the shaft."""
-        return tuple(Pose(height=height) for height in self.form.heights())
-
-    @property
-    def profile_tolerance(self) -> float:
-        """Chord tolerance of the profile, mm."""
-        return self.profile.tolerance
-
-    @property
-    def chord_error(self) -> float:
-        """Largest chord error of the finished walls, mm."""
-        return max(one.chord_error for one in self.contours)
-
-    def rows_of(self, number: int) -> Sequence[str]:
-        """Return the names of the facts in the table of a part's drawing, by its `number`."""
-        return self.form.rows_of(number)
-
     @cached_property
     def error_rows(self) -> Estimates:
         """Error estimates and their methods by name, without those of chords and files."""
@@ -309,19 +177,9 @@ class CamResult(PartsResult):
     @cached_property
     def places_under_load(self) -> Array:
         """Positions of the driver that the study of forces looks at, rad or mm."""
-        from gearcam.kinds.cam.under_load import places
+        from gearcam.kinds.cam.under_load import UnderLoad
 
-        return places(self)
-
-    @cached_property
-    def drawing(self) -> Drawing:
-        """The assembled cam with its follower, at the angle of the design."""
-        return self.form.picture()
-
-    def wall(self, key: str | None) -> Wall:
-        """Return the wall with a key; by default the first."""
-        walls = {one.key: one for one in self.cam.walls}
-        return walls[next(iter(walls)) if key is None else one_of("wall", key, tuple(walls))]
+        return UnderLoad(self).places()
 
     def contact(self, theta: ArrayLike | None = None, wall: str | None = None) -> Columns:
         """Return the points of contact of the follower on the profile, or a wall, before clearance.
@@ -369,29 +227,6 @@ class CamResult(PartsResult):
         )
 
     @cached_property
-    def contours(self) -> tuple[Contour, ...]:
-        """The finished walls, with clearance, in the order of `Cam.walls`."""
-        return self.form.finished() if self.ordered else self.profiles
-
-    @property
-    def contour(self) -> Contour:
-        """The first finished wall: for a disc cam the profile with its clearance."""
-        return self.contours[0]
-
-    @cached_property
-    def part_subject(self) -> CheckedParts:
-        """Input of the checks of parts."""
-        from gearcam.parts.checks import CheckedParts
-
-        parts = self.parts
-        return CheckedParts(
-            parts=parts,
-            names=tuple(part.name for part in parts),
-            kerf=self.design.output.kerf,
-            uncut=(False,) * len(parts),
-        )
-
-    @cached_property
     def checked(self) -> tuple[Finding, ...]:
         """Findings of the checks, errors first."""
         found = self.checked_without_hints
@@ -408,7 +243,7 @@ class CamResult(PartsResult):
         cam = self.cam
         with self.stage("checks"):
             found = run_checks(KIND, cam, self.design.limits)
-            found += self.row_findings
+            found += self.rows.findings
         if self.ordered:
             subject = self.part_subject
             with self.stage("checks"):
@@ -452,24 +287,18 @@ class CamResult(PartsResult):
         DesignError
             If it is not a profile, or the file cannot be read.
         """
-        from gearcam.kinds.cam.studies import follow
-
-        return follow(self, profile, wall, progress, fit=fit)
-
-
-def _ending(one: PitchMotion) -> str:
-    """Return the key of a motion or wall as a part of column names."""
-    return f"_{one.key}" if one.key else ""
+        study = self.kind.studies["follow"]
+        return study.compute(self, progress or silent, profile=profile, wall=wall, fit=fit)
 
 
 def pressure_column(motion: PitchMotion) -> str:
     """Return the column of the pressure angles of a `motion`."""
-    return f"pressure_angle{_ending(motion)}_deg"
+    return f"pressure_angle{motion.ending}_deg"
 
 
 def rho_column(what: str, one: PitchMotion) -> str:
     """Return the column of radii of `what`, ``pitch`` or ``profile``, of motion or wall `one`."""
-    return f"rho_{what}{_ending(one)}_mm"
+    return f"rho_{what}{one.ending}_mm"
 
 
 _LENGTHS, _ANGLES, _COEFFICIENTS = 4.0 * EPS, 4.0 * EPS, 2.5 * EPS

@@ -4,45 +4,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
-import numpy as np
-
-from gearcam.base.facts import Fact, Facts, extent
-from gearcam.base.findings import limit_of
+from gearcam.base.facts import Fact, Facts, Tree, extent
 from gearcam.base.numerals import formatted
-from gearcam.cams.checks import KIND, pressure_limits
 from gearcam.designs.outputs import MESHES
+from gearcam.kinds.cam.wall_facts import pressure
 from gearcam.kinds.shared import peak_of
 from gearcam.parts.mass import part_facts
 from gearcam.report.file import report_files
 from gearcam.results.parts import Files, Measured, dxf_files, part_files
 
 if TYPE_CHECKING:
-    from gearcam.cams.measures import Range
-    from gearcam.cams.wall import PitchMotion, Wall
+    from gearcam.cams.wall import Wall
     from gearcam.kinds.cam.result import CamResult
     from gearcam.laws.program import Program
     from gearcam.numeric.arrays import Array
-    from gearcam.numeric.contour import Contour
-
-Tree = dict[str, Any]
 
 _DERIVATIVES: Final = ("velocity", "acceleration", "jerk")
-
-
-_RADII: Final = {
-    "profile_min_mm": "smallest radius of the profile",
-    "pitch_min_mm": "smallest radius of the pitch curve",
-    "pitch_rise_min_mm": "smallest radius of the pitch curve, rise",
-    "pitch_return_min_mm": "smallest radius of the pitch curve, return",
-    "profile_convex_min_mm": "smallest convex radius",
-    "profile_concave_min_mm": "smallest concave radius",
-}
-"""Labels of radii of curvature."""
-
-_SHOWN: Final = ("profile_convex_min_mm", "profile_concave_min_mm")
-"""Keys that are always shown."""
 
 
 def facts(result: CamResult) -> Facts:
@@ -90,9 +69,9 @@ def _solution(result: CamResult) -> Tree | None:
     found = result.solution
     if found is None:
         return None
-    sizes = {key.split(".")[1]: (key, value) for key, value in found.sizes.items()}
     tree: Tree = {
-        name: Fact(value, f"{key}, solved", shown=True) for name, (key, value) in sizes.items()
+        key.split(".")[1]: Fact(value, f"{key}, solved", shown=True)
+        for key, value in found.sizes.items()
     }
     if found.deciding:
         tree["decided_by"] = Fact(", ".join(found.deciding), "decided by", shown=True)
@@ -130,48 +109,12 @@ def _cam(result: CamResult) -> Tree:
         "pivot_distance_mm": given.pivot_distance,
         "arm_mm": given.arm,
         "face_offset_mm": given.face_offset or None,
-        **result.form.sizes(),
+        **result.form.sizes(result.cam),
         "thickness_mm": design.cam.thickness,
-        "pressure_angle_deg": pressure(result, result.cam.motions[0]),
+        "pressure_angle_deg": pressure(result.cam.motions[0], design.limits),
         "lost_motion": _lost_motion(result),
-        **result.form.facts(),
+        **result.form.facts(result.cam, result.contours),
     }
-
-
-def pressure(result: CamResult, motion: PitchMotion) -> Tree:
-    """Return the pressure angles of rises and returns.
-
-    Parameters
-    ----------
-    result : CamResult
-        With the limits.
-    motion : PitchMotion
-        One of the motions of its cam.
-
-    Returns
-    -------
-    dict
-        Of facts.
-    """
-    made: Tree = {}
-    whose = f", {motion.called}" if motion.key else ""
-    given = limit_of(KIND, "pressure-angle", result.design.limits)
-    largest = 0.0
-    for kind, limit in pressure_limits(result.follower, given).items():
-        found = motion.pressure(kind)
-        if found is not None:
-            worst = max(found.low, found.high, key=lambda end: abs(end.value))
-            made[f"{kind}_max"] = Fact(
-                math.degrees(found.largest),
-                f"pressure angle, {kind}{whose}",
-                at_most=math.degrees(limit),
-                place=result.driver.place(worst.theta),
-                unit="deg",
-                shown=found.largest > 0.0,
-            )
-            made[kind] = Fact(ends_of(found, math.degrees(1.0)), unit="deg")
-            largest = max(largest, found.largest)
-    return {"max": Fact(math.degrees(largest), unit="deg")} | made if made else made
 
 
 def _lost_motion(result: CamResult) -> Fact | None:
@@ -198,83 +141,6 @@ def _part(result: CamResult) -> Tree | list[Tree]:
     return parts if several else parts[0]
 
 
-def ends_of(found: Range, scale: float = 1.0) -> dict[str, float]:
-    """Return both ends of the range `found`, times a `scale`."""
-    return extent(found.low.value, found.high.value, scale)
-
-
-def size(wall: Wall, made: Contour, clearance: float = 0.0) -> Tree:
-    """Return the sizes of a finished wall, with clearance.
-
-    Parameters
-    ----------
-    wall : Wall
-        The curve that the follower touches.
-    made : Contour
-        The curve that is cut.
-    clearance : float, mm
-        Distance between them.
-
-    Returns
-    -------
-    dict
-        Facts by key.
-    """
-    reach = np.abs(made.points)
-    least = min(float(reach.min()), wall.nearest_flat - clearance)
-    common = {
-        "chord_error_mm": made.chord_error,
-        "vertices": len(made.points),
-        "radius_mm": extent(least, float(reach.max())),
-    }
-    if clearance:
-        return {"clearance_mm": clearance, "area_mm2": made.moments.area, **common}
-    return {
-        "perimeter_mm": wall.size.perimeter,
-        "area_mm2": wall.size.area,
-        "least_vertices": wall.sampler.least,
-        **common,
-    }
-
-
-def curvature(wall: Wall) -> Tree:
-    """Return the smallest radii of profile and pitch curve: all, rises, returns, each sign."""
-    convex, concave = wall.profile_radius
-    made = {"profile_min_mm": min(convex, concave)}
-    whole = wall.pitch_curvature()
-    made["pitch_min_mm"] = min(convex, concave) if whole is None else whole.least_radius
-    for kind in ("rise", "return"):
-        found = wall.pitch_curvature(kind)
-        if found is not None:
-            made[f"pitch_{kind}_min_mm"] = found.least_radius
-    made |= {"profile_convex_min_mm": convex, "profile_concave_min_mm": concave}
-    which = f", {wall.called}" if wall.key else ""
-    return {
-        name: Fact(value, _RADII[name] + which, shown=name in _SHOWN)
-        for name, value in made.items()
-        if math.isfinite(value)
-    }
-
-
-def start_angle(motion: PitchMotion) -> float | None:
-    """Return the angle at zero lift of an oscillating follower, deg."""
-    follower = motion.follower
-    return math.degrees(follower.start) if follower.angular else None
-
-
-def trimming(wall: Wall) -> Tree:
-    """Return where a `wall` is undercut, and the lift lost by trimming."""
-    corners, swings, scale = bool(wall.edges), wall.follower.angular, wall.carrier.driver.scale
-    return {
-        "undercut": [[scale * low, scale * high] for low, high in wall.undercut_ranges],
-        "lost_lift_deg": math.degrees(wall.shortfall) if corners and swings else None,
-        "lost_lift_mm": wall.shortfall if corners and not swings else None,
-    }
-
-
-_SHORT: Final = {"lift": "s", "velocity": "ds", "acceleration": "d2s", "jerk": "d3s"}
-"""What the file calls the lift and its derivatives, by the first words of their columns."""
-
 _STUDY: Final = (90, 180, 360, 720, 1440, 2880, 5760)
 """Points of a turn whose three-point curvature is held against the exact one."""
 
@@ -291,24 +157,14 @@ def _tables(result: CamResult, _: Measured) -> Files:
     """
     from gearcam.export.table import outline_bytes, table_bytes
 
-    columns = {_short(name): values for name, values in result.motion().items()}
+    table = result.motion()
+    short = dict(zip([*table][1:5], ("s", "ds", "d2s", "d3s"), strict=True))
+    motion = {short.get(name, name): values for name, values in table.items()}
     walls = zip(result.cam.walls, result.contours, strict=True)
     return {
-        **{_named("profile", wall): outline_bytes(made.points) for wall, made in walls},
-        "motion.csv": table_bytes(columns),
+        **{f"profile{wall.ending}.csv": outline_bytes(made.points) for wall, made in walls},
+        "motion.csv": table_bytes(motion),
     }
-
-
-def _short(name: str) -> str:
-    """Return the name in the file of a column of the motion; those by time keep theirs."""
-    what, _, unit = name.partition("_")
-    by_time = unit.partition("_")[2].startswith("s")
-    return name if by_time else _SHORT.get(what, name)
-
-
-def _named(stem: str, wall: Wall) -> str:
-    """Return the name of a table of a wall."""
-    return f"{stem}_{wall.key}.csv" if wall.key else f"{stem}.csv"
 
 
 def _inspection(result: CamResult, _: Measured) -> Files:
@@ -323,22 +179,18 @@ def _inspection(result: CamResult, _: Measured) -> Files:
     """
     from gearcam.export.table import table_bytes
 
-    count = result.design.output.inspection_points
-    walls = zip(result.cam.walls, result.profiles, strict=True)
-    return {
-        _named("inspection", wall): table_bytes(_inspected(result, wall, profile, count))
-        for wall, profile in walls
-    }
+    walls = result.cam.walls
+    return {f"inspection{wall.ending}.csv": table_bytes(_inspected(result, wall)) for wall in walls}
 
 
-def _inspected(result: CamResult, wall: Wall, profile: Contour, count: int) -> dict[str, Array]:
-    theta, points, normals = wall.places(count)
-    driver = wall.carrier.driver
-    clearance = result.design.blank.clearance
+def _inspected(result: CamResult, wall: Wall) -> dict[str, Array]:
+    """Return the columns of the points for inspection of a wall."""
+    theta, points, normals = wall.places(result.design.output.inspection_points)
+    driver, clearance = wall.carrier.driver, result.design.blank.clearance
     if clearance:
         from gearcam.parts.parallel import touches
 
-        kept = touches(profile, points, normals, -clearance)
+        kept = touches(wall.contour, points, normals, -clearance)
         theta, points, normals = theta[kept], points[kept], normals[kept]
         points = points - clearance * normals
     return {
@@ -363,7 +215,7 @@ def _tool_path(result: CamResult, measured: Measured) -> Files:
     from gearcam.export.table import outline_bytes
     from gearcam.pictures.drawings import TOOL, Drawing, Feature, reach
 
-    paths = result.form.paths(result.design.output.tool_radius)
+    paths = result.paths()
     tables = {f"{name}.csv": outline_bytes(reach(path)) for name, path in paths.items()}
     drawings = [
         Drawing(name=name, features=(Feature(layer=TOOL, shape=path),))

@@ -44,7 +44,7 @@ from gearcam.kinds.cam.under_load import largest_pressure, loads_of
 from gearcam.parts.checks import KIND as PARTS_KIND
 
 if TYPE_CHECKING:
-    from gearcam.kinds.cam.result import CamResult
+    from gearcam.kinds.cam.made import MadeCam
     from gearcam.numeric.arrays import Array
     from gearcam.pictures.charts import Chart
 
@@ -165,12 +165,12 @@ class Solution(ShortRepr):
     deciding: tuple[str, ...]
 
 
-def solved(result: CamResult, *, advise: bool = True) -> Solution:
+def solved(result: MadeCam, *, advise: bool = True) -> Solution:
     """Return the solution of a design that asks for sizes.
 
     Parameters
     ----------
-    result : CamResult
+    result : MadeCam
         Of the design.
     advise : bool
         Whether a refusal has to name a limit with which there is a solution.
@@ -229,7 +229,7 @@ def _sized(design: CamDesign, sizes: Mapping[str, float]) -> CamDesign:
     return design.with_({**sizes, "bounds": {}})
 
 
-def _pressed(result: CamResult, task: Task, found: Found) -> tuple[Task, Found]:
+def _pressed(result: MadeCam, task: Task, found: Found) -> tuple[Task, Found]:
     """Return the task under a limit of the contact pressure, and what it finds.
 
     Weights of a swinging follower depend on its place: the loads are those on the last cam, until
@@ -255,9 +255,9 @@ def _pressed(result: CamResult, task: Task, found: Found) -> tuple[Task, Found]:
     return task, found
 
 
-def _load_on(cam: CamResult, most: float) -> Load:
+def _load_on(cam: MadeCam, most: float) -> Load:
     """Return what a cam carries under a largest pressure, MPa."""
-    design, width = cam.design, cam.form.contact_width
+    design, width = cam.design, cam.contact_width
     return Load(
         total_load=loads_of(cam).total_load,
         friction=design.friction,
@@ -267,12 +267,12 @@ def _load_on(cam: CamResult, most: float) -> Load:
     )
 
 
-def alone(result: CamResult, key: str, more: Mapping[str, Any] | None = None) -> float | None:
+def alone(result: MadeCam, key: str, more: Mapping[str, Any] | None = None) -> float | None:
     """Return the value of one size, mm, with which a cam keeps all limits; None if there is none.
 
     Parameters
     ----------
-    result : CamResult
+    result : MadeCam
         Of a cam that does not.
     key : str
         The key of the size.
@@ -291,7 +291,7 @@ class Task:
 
     Parameters
     ----------
-    result : CamResult
+    result : MadeCam
         Of the design.
     load : Load, optional
         What the cam has to move, where the contact pressure is limited.
@@ -299,7 +299,7 @@ class Task:
         Whether a refusal has to name a limit with which there is a solution.
     """
 
-    def __init__(self, result: CamResult, load: Load | None = None, *, advise: bool = True) -> None:
+    def __init__(self, result: MadeCam, load: Load | None = None, *, advise: bool = True) -> None:
         self.result, self.advise, design = result, advise, result.design
         self.design, self.program = design, lift_program(design, result.tolerances)
         program = self.program
@@ -448,12 +448,12 @@ class Task:
         ((named, sign),) = signs.items()
         return _GOALS[named], sign
 
-    def keeps(self, result: CamResult) -> bool:
+    def keeps(self, result: MadeCam) -> bool:
         """Return whether a cam has no finding about the limits.
 
         Parameters
         ----------
-        result : CamResult
+        result : MadeCam
             Of a design with all sizes.
         """
         try:
@@ -574,21 +574,15 @@ class Task:
         return math.floor(value / safe) * safe, limit
 
 
-def region(result: CamResult) -> Chart | None:
-    """Return the chart of the sizes that keep each limit; None unless two are solved for.
-
-    Parameters
-    ----------
-    result : CamResult
-        Of a design that asks for sizes.
-    """
+def region(solution: Solution) -> Chart | None:
+    """Return the chart of the sizes that keep each limit; None unless two are solved for."""
     from gearcam.pictures.charts import Chart, Line
 
-    if result.solution is None or len(result.solution.sizes) != 2:
+    if len(solution.sizes) != 2:
         return None
-    task = result.solution.task
+    task = solution.task
     first, second = sorted(task.names, key=lambda key: task.names[key] == "radius")
-    chosen = result.solution.sizes
+    chosen = solution.sizes
     reach = _AROUND * max(abs(chosen[first]), abs(chosen[second]))
     places = [
         np.linspace(max(low, chosen[key] - reach), min(high, chosen[key] + reach), _GRID)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, Final
+from typing import Any, Final
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.quantities import (
@@ -24,9 +24,54 @@ from gearcam.base.quantities import (
     params_of,
     positive_length,
 )
+from gearcam.base.registry import deferred
 from gearcam.base.rules import Breach, needs
 from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, pose_param, studies_param
+from gearcam.kinds.shared import ACCURACY
 from gearcam.parts.blank import OPENING_RULES, WheelBlank, least_metal, widening_rules
+from gearcam.results.kind import Study, studies_of
+
+NAME: Final = "cam"
+"""As in a file."""
+
+_HERE: Final = "gearcam.kinds.cam"
+
+STUDIES: Final = studies_of(
+    NAME,
+    Study(
+        name="follow",
+        key="followed",
+        doc="Compute the follower motion on a given profile; write DIR/NAME/followed.csv. With "
+        "--fit find the design that moves like this; write DIR/NAME/fitted.toml too.",
+        done="followed",
+        table="follow",
+        compute=deferred(f"{_HERE}.given_profile:study_follow"),
+        argument="file",
+        metavar="PROFILE",
+        demand=deferred(f"{_HERE}.given_profile:demand"),
+        many=False,
+    ),
+    Study(
+        name="forces",
+        key="forces",
+        doc="Compute forces, torque, efficiency and contact pressure; write DIR/NAME/forces.csv.",
+        done="computed",
+        table="forces",
+        compute=deferred(f"{_HERE}.forces:study_forces"),
+        demand=deferred(f"{_HERE}.under_load:demand"),
+    ),
+    Study(
+        name="precision",
+        key="precision",
+        doc="Compute how errors of sizes move the follower; write DIR/NAME/precision.csv.",
+        done="studied",
+        table="precision",
+        options={"lift_error_deg": "swing-error"},
+        compute=deferred(f"{_HERE}.precision:study_precision"),
+    ),
+    ACCURACY,
+)
+"""The studies by name."""
 
 CAM_FORMATS: Final = (*FORMATS, "tool-path", "curvature")
 """What ``output.files`` of a cam may list."""
@@ -221,12 +266,8 @@ class CamOutputSpec(OutputSpec):
     CamOutputSpec(files=('dxf', 'tool-path'), tool_radius=4)
     """
 
-    study_tables: ClassVar[Mapping[str, str]] = {
-        one: one for one in ("follow", "forces", "precision", "accuracy")
-    }
-
-    files: tuple[str, ...] = files_param(CAM_FORMATS)
-    studies: tuple[str, ...] = studies_param(study_tables)
+    files: tuple[str, ...] = files_param(CAM_FORMATS, NAME)
+    studies: tuple[str, ...] = studies_param(STUDIES)
     chord_tolerance: float | None = param(
         LENGTH,
         default=None,

@@ -18,7 +18,7 @@ from gearcam.numeric.piecewise import with_both_sides
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from gearcam.kinds.cam.result import CamResult
+    from gearcam.kinds.cam.made import MadeCam
     from gearcam.numeric.arrays import Array, Ints
 
 _TOLD: Final = 0.1
@@ -61,14 +61,17 @@ def demand(design: Any) -> None:
         raise DesignError([problem])
 
 
-def loads_of(result: CamResult) -> Loads:
+def loads_of(result: MadeCam) -> Loads:
     """Return what acts on the follower of a cam, its `result`, beside the cam.
 
     Raises
     ------
+    DesignError
+        If it needs a speed, and none is given.
     InfeasibleError
         If no stiffness of a spring keeps the follower on the cam.
     """
+    demand(result.design)
     design, motion = result.design, result.cam.motions[0]
     pull = design.gravity.pull
     follower, highest = motion.follower, motion.program.range[1]
@@ -93,118 +96,144 @@ def _no_stiffness(loads: Loads) -> InfeasibleError:
     number = next(k for k, one in enumerate(loads.springs) if one.rate == "solve")
     spring = loads.springs[number]
     given = spring.force if isinstance(spring.force, float) else 0.0
-    name, unit, scale = "preload_n", "N", 1.0
-    if loads.follower.angular:
-        name, unit, scale = "preload_nm", "N m", 1e-3
+    scale, unit, suffix = loads.follower.load_unit
     what = "no stiffness keeps the follower on the cam: at zero lift only a preload does"
     needed = scale * (given + loads.preload_at_rest)
-    where, rule = f"spring[{number}].{name}", "the limit is the least preload"
+    where, rule = f"spring[{number}].preload_{suffix}", "the limit is the least preload"
     return beyond_limit(what, where, scale * given, needed, rule, unit=unit)
 
 
-def places(result: CamResult) -> Array:
-    """Return the positions of the driver that are studied; they rise.
-
-    Beside even steps these are both sides of knots of the lift and of the loads, and of places
-    where another wall or an edge begins to carry, or the follower begins to lift off or is locked;
-    and where forces and contact pressure are largest and least. A cam that slides comes back
-    through them.
-    """
-    period, count = result.program.period, result.design.forces.steps
-    even = period * np.arange(count + 1.0) / count
-    even[-1] = np.nextafter(period, 0.0)
-    knots = [result.program.knots, *(one.knots for one in result.design.load)]
-    knots += [touch.edges for touch in result.cam.touches]
-    x = with_both_sides(even, np.concatenate(knots))
-    loads = loads_of(result)
-    for sought in (_changes, _extremes):  # in this order: extremes may lie beside changes
-        x = np.union1d(x, sought(result, loads, x))
-    return x
-
-
-def _changes(result: CamResult, loads: Loads, x: Array) -> Array:
-    """Return both sides of where something else carries, between positions `x`."""
-    x, way = _to_and_fro(loads, x)
-
-    def states(statics: Statics) -> Array:
-        on_edge = np.isinf(pressure_of(result, statics))
-        return 4.0 * statics.carrying + 2.0 * statics.locked + on_edge
-
-    sampled = _statics(result, loads, x, way)
-    at = np.flatnonzero((np.diff(states(sampled)) != 0.0) & (np.diff(way) == 0.0))
-    beside = _beside(result, loads, (x, way, sampled), at)
-
-    def function(places: Array, rows: Ints) -> Array:
-        return states(beside(places, rows))[_SCALES:].reshape(places.shape)
-
-    tolerance = _CLOSE * result.program.period
-    return np.concatenate(narrowing.changes(function, x[at], x[at + 1], tolerance))
-
-
-def _extremes(result: CamResult, loads: Loads, x: Array) -> Array:
-    """Return where the quantities of the facts are largest, or least, near positions `x`."""
-    x, way = _to_and_fro(loads, x)
-
-    def sought(statics: Statics) -> Array:
-        pressure, force = pressure_of(result, statics), statics.force
-        least = (force, statics.torque, statics.reserve, efficiency_away_from_rest(statics))
-        most = (force, statics.torque, np.where(np.isinf(pressure), np.nan, pressure))
-        found = np.stack([*(-one for one in least), *most])
-        return np.where(np.isnan(found), -np.inf, found)
-
-    sampled = _statics(result, loads, x, way)
-    found = sought(sampled)
-    which, at = _peaks(found, np.flatnonzero(np.diff(way, prepend=0.0, append=0.0)))
-    beside = _beside(result, loads, (x, way, sampled), at)
-
-    def function(places: Array, rows: Ints) -> Array:
-        values = sought(beside(places, rows))[:, _SCALES:].reshape(-1, *places.shape)
-        return values[which[rows], np.arange(len(rows))]
-
-    ends = x[np.maximum(at - 1, 0)], x[np.minimum(at + 1, len(x) - 1)]
-    found_at, values = narrowing.peaks(function, *ends, _NARROW * result.program.period)
-    kept = []
-    for number, largest in enumerate(found.max(axis=1)):
-        own = np.flatnonzero(which == number)
-        best = max(own, key=values.__getitem__, default=None)
-        if best is not None and values[best] > largest + _ROUNDING * abs(largest):
-            kept.append(found_at[best])
-    return np.array(kept)
-
-
-def _beside(
-    result: CamResult, loads: Loads, known: tuple[Array, Array, Statics], at: Ints
-) -> Callable[[Array, Ints], Statics]:
-    """Return the forces at places in brackets, each on the way of the known position in `at`.
-
-    The first two are those at the largest load and at the largest power, with which rounding and
-    rest are compared.
+class UnderLoad:
+    """A cam under its loads.
 
     Parameters
     ----------
-    result : CamResult
+    result : MadeCam
         The cam.
-    loads : Loads
-        Its loads.
-    known : tuple
-        Positions, ways, and the forces there.
-    at : (n,) int array
-        A position of each bracket.
 
-    Returns
-    -------
-    callable
-        ``function(places, rows)`` of (m, k) places, in each bracket's row.
+    Raises
+    ------
+    DesignError, InfeasibleError
+        As `loads_of` does.
     """
-    x, way, sampled = known
-    scales = [int(np.argmax(np.abs(one))) for one in (sampled.against, sampled.useful)]
 
-    def function(places: Array, rows: Ints) -> Statics:
-        ways = np.repeat(way[at[rows]], places.shape[1])
-        more = np.concatenate([x[scales], places.ravel()])
-        return _statics(result, loads, more, np.concatenate([way[scales], ways]))
+    def __init__(self, result: MadeCam) -> None:
+        self.result = result
+        self.loads = loads_of(result)
 
-    return function
+    def places(self) -> Array:
+        """Return the positions of the driver that are studied; they rise.
+
+        Beside even steps these are both sides of knots of the lift and of the loads, and of places
+        where another wall or an edge begins to carry, or the follower begins to lift off or is
+        locked; and where forces and contact pressure are largest and least. A cam that slides comes
+        back through them.
+        """
+        program, design = self.result.program, self.result.design
+        period, count = program.period, design.forces.steps
+        even = period * np.arange(count + 1.0) / count
+        even[-1] = np.nextafter(period, 0.0)
+        knots = [program.knots, *(one.knots for one in design.load)]
+        knots += [touch.edges for touch in self.result.cam.touches]
+        x = with_both_sides(even, np.concatenate(knots))
+        x = np.union1d(x, self._changes(x))
+        return np.union1d(x, self._extremes(x))  # which may lie beside changes
+
+    def to_and_fro(self, x: Array) -> tuple[Array, Array]:
+        """Return positions `x` in the order of the motion, and the way of each."""
+        ways = self.loads.ways
+        return np.concatenate([x[:: int(one)] for one in ways]), np.repeat(ways, len(x))
+
+    def statics(self, x: Array, way: Array) -> Statics:
+        """Return the forces at positions `x` of the driver, and each `way`."""
+        design = self.result.design
+        dragged = partial(design.follower.dragged, design.friction)
+        return solve(self.result.cam.touches, self.loads, self.loads.motion(x, way), dragged)
+
+    def pressure(self, statics: Statics) -> Array:
+        """Return the contact pressure, MPa; infinite where an edge of cam or follower carries."""
+        per_width = statics.force / self.result.contact_width
+        return line_pressure(per_width, statics.curvature, self.result.design.material)
+
+    def _changes(self, x: Array) -> Array:
+        """Return both sides of where something else carries, between positions `x`."""
+        x, way = self.to_and_fro(x)
+
+        def states(statics: Statics) -> Array:
+            on_edge = np.isinf(self.pressure(statics))
+            return 4.0 * statics.carrying + 2.0 * statics.locked + on_edge
+
+        sampled = self.statics(x, way)
+        at = np.flatnonzero((np.diff(states(sampled)) != 0.0) & (np.diff(way) == 0.0))
+        beside = self._beside(x, way, sampled, at)
+
+        def function(places: Array, rows: Ints) -> Array:
+            return states(beside(places, rows))[_SCALES:].reshape(places.shape)
+
+        tolerance = _CLOSE * self.result.program.period
+        return np.concatenate(narrowing.changes(function, x[at], x[at + 1], tolerance))
+
+    def _extremes(self, x: Array) -> Array:
+        """Return where the quantities of the facts are largest, or least, near positions `x`."""
+        x, way = self.to_and_fro(x)
+
+        def sought(statics: Statics) -> Array:
+            pressure, force = self.pressure(statics), statics.force
+            least = (force, statics.torque, statics.reserve, efficiency_away_from_rest(statics))
+            most = (force, statics.torque, np.where(np.isinf(pressure), np.nan, pressure))
+            found = np.stack([*(-one for one in least), *most])
+            return np.where(np.isnan(found), -np.inf, found)
+
+        sampled = self.statics(x, way)
+        found = sought(sampled)
+        which, at = _peaks(found, np.flatnonzero(np.diff(way, prepend=0.0, append=0.0)))
+        beside = self._beside(x, way, sampled, at)
+
+        def function(places: Array, rows: Ints) -> Array:
+            values = sought(beside(places, rows))[:, _SCALES:].reshape(-1, *places.shape)
+            return values[which[rows], np.arange(len(rows))]
+
+        ends = x[np.maximum(at - 1, 0)], x[np.minimum(at + 1, len(x) - 1)]
+        narrow = _NARROW * self.result.program.period
+        found_at, values = narrowing.peaks(function, *ends, narrow)
+        kept = []
+        for number, largest in enumerate(found.max(axis=1)):
+            own = np.flatnonzero(which == number)
+            best = max(own, key=values.__getitem__, default=None)
+            if best is not None and values[best] > largest + _ROUNDING * abs(largest):
+                kept.append(found_at[best])
+        return np.array(kept)
+
+    def _beside(
+        self, x: Array, way: Array, sampled: Statics, at: Ints
+    ) -> Callable[[Array, Ints], Statics]:
+        """Return the forces at places in brackets, each on the way of the known position in `at`.
+
+        The first two are those at the largest load and at the largest power, with which rounding
+        and rest are compared.
+
+        Parameters
+        ----------
+        x, way : (m,) arrays
+            Known positions and ways.
+        sampled : Statics
+            The forces there.
+        at : (n,) int array
+            A position of each bracket.
+
+        Returns
+        -------
+        callable
+            ``function(places, rows)`` of (m, k) places, in each bracket's row.
+        """
+        scales = [int(np.argmax(np.abs(one))) for one in (sampled.against, sampled.useful)]
+
+        def function(places: Array, rows: Ints) -> Statics:
+            ways = np.repeat(way[at[rows]], places.shape[1])
+            more = np.concatenate([x[scales], places.ravel()])
+            return self.statics(more, np.concatenate([way[scales], ways]))
+
+        return function
 
 
 def _peaks(values: Array, cuts: Ints) -> tuple[Ints, Ints]:
@@ -222,61 +251,14 @@ def _peaks(values: Array, cuts: Ints) -> tuple[Ints, Ints]:
     return row, columns[best[row, rank]]
 
 
-def _to_and_fro(loads: Loads, x: Array) -> tuple[Array, Array]:
-    """Return positions in the order of the motion, and the way of each."""
-    way = np.repeat(loads.ways, len(x))
-    return np.concatenate([x[:: int(one)] for one in loads.ways]), way
-
-
-def _statics(result: CamResult, loads: Loads, x: Array, way: Array) -> Statics:
-    """Return the forces of a cam at positions of the driver, and ways."""
-    design, motion = result.design, loads.motion(x, way)
-    return solve(
-        result.cam.touches,
-        loads.support,
-        x,
-        motion.ds,
-        loads.total_load(motion),
-        design.friction,
-        partial(design.follower.dragged, design.friction),
-        way,
-    )
-
-
-def under_load(result: CamResult) -> tuple[Loads, Array, Array, Statics]:
-    """Return the loads of a cam, the positions and ways that are studied, and the forces there."""
-    demand(result.design)
-    loads = loads_of(result)
-    x, way = _to_and_fro(loads, result.places_under_load)
-    return loads, x, way, _statics(result, loads, x, way)
-
-
-def pressure_of(result: CamResult, statics: Statics) -> Array:
-    """Return the contact pressure, MPa; infinite where an edge of cam or follower carries.
-
-    Parameters
-    ----------
-    result : CamResult
-        The cam.
-    statics : Statics
-        Its forces at n positions.
-
-    Returns
-    -------
-    (n,) array, MPa
-    """
-    per_width = statics.force / result.form.contact_width
-    return line_pressure(per_width, statics.curvature, result.design.material)
-
-
-def largest_pressure(result: CamResult) -> float:
+def largest_pressure(result: MadeCam) -> float:
     """Return the largest contact pressure of a cam, MPa; 0 without any contact under load.
 
     It is infinite where an edge of the cam or the follower carries.
 
     Parameters
     ----------
-    result : CamResult
+    result : MadeCam
         The cam.
 
     Raises
@@ -284,8 +266,9 @@ def largest_pressure(result: CamResult) -> float:
     DesignError, InfeasibleError
         As those of the study.
     """
-    *_, statics = under_load(result)
-    return float(np.nanmax(pressure_of(result, statics), initial=0.0))
+    under = UnderLoad(result)
+    statics = under.statics(*under.to_and_fro(under.places()))
+    return float(np.nanmax(under.pressure(statics), initial=0.0))
 
 
 def efficiency_away_from_rest(statics: Statics) -> Array:

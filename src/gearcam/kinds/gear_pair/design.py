@@ -4,30 +4,58 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, fields
-from typing import Any, ClassVar, Final, TypeGuard
+from typing import Any, Final, TypeGuard
 
+from gearcam.base.brought import group_of
 from gearcam.base.quantities import COUNT, param
-from gearcam.base.registry import DeferredMapping, deferred, name_of
+from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.base.rules import Breach, Rule, Values, at_most, only_with
 from gearcam.designs.design import Design
 from gearcam.designs.faults import Fault, show
 from gearcam.designs.kind import Examined
 from gearcam.designs.nodes import Choice
-from gearcam.designs.outputs import OutputSpec, pose_param, studies_param
+from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, pose_param, studies_param
 from gearcam.designs.table import table_of
 from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.gears.subject import KIND as TEETH
-from gearcam.kinds.shared import AccuracySpec, GoalSpec
-from gearcam.laws.ratio.base import LAWS
+from gearcam.kinds.shared import ACCURACY, AccuracySpec, GoalSpec
+from gearcam.laws.ratio import LAWS
 from gearcam.mechanics.drive import DriveSpec
 from gearcam.meshing.settings import ERRORS, ErrorsSpec, MeshingSpec
 from gearcam.meshing.settings import KIND as MESHING
 from gearcam.parts.blank import KIND as PARTS
 from gearcam.parts.blank import Blank, serving
-from gearcam.results.kind import Kind
+from gearcam.results.kind import Kind, Study, studies_of
 
 NAME: Final = "gear-pair"
 """As in a file."""
+
+_HERE: Final = "gearcam.kinds.gear_pair"
+
+STUDIES: Final = studies_of(
+    NAME,
+    Study(
+        name="mesh",
+        key="meshing",
+        doc="Study the meshing of gear pairs step by step; write DIR/NAME/meshing.csv.",
+        done="meshed",
+        table="meshing",
+        compute=deferred(f"{_HERE}.studies:study_mesh"),
+        options={"center_distance_mm": "center"},
+        repeats=("contact-ratio",),  # the study checks the drive as mounted
+    ),
+    Study(
+        name="errors",
+        key="errors",
+        doc="Study errors of mounting and making of gear pairs; write DIR/NAME/errors.csv.",
+        done="studied",
+        table="errors",
+        compute=deferred(f"{_HERE}.errors:study_errors"),
+        options={"eccentricity_deg": "eccentricity-angle", "file": "pitch"},
+    ),
+    ACCURACY,
+)
+"""The studies by name."""
 
 _OF_SHAFT: Final = ("bore_diameter", "hub_diameter", "lightening_holes", "stop_pin")
 """What a ring does not have."""
@@ -55,13 +83,8 @@ class PairOutputSpec(OutputSpec):
     PairOutputSpec(files=('dxf', 'csv'), chord_tolerance=0.005)
     """
 
-    study_tables: ClassVar[Mapping[str, str]] = {
-        "mesh": "meshing",
-        "errors": "errors",
-        "accuracy": "accuracy",
-    }
-
-    studies: tuple[str, ...] = studies_param(study_tables)
+    files: tuple[str, ...] = files_param(FORMATS, NAME)
+    studies: tuple[str, ...] = studies_param(STUDIES)
     pose: float = pose_param("phi1", "driver angle of the assembly drawing")
     inspection_points: int = param(
         COUNT, default=9, ge=2, le=1000, doc="number of points on each flank in inspection.csv"
@@ -125,7 +148,7 @@ class GearPairDesign(Design):
     @property
     def law_type(self) -> str:
         """Name of the law in the registry; empty if it is not a law."""
-        return name_of(LAWS, self.law)
+        return LAWS.name_of(self.law)
 
 
 LAW: Final = Choice(
@@ -225,8 +248,6 @@ def _is_number(value: Any) -> TypeGuard[float]:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-_HERE: Final = "gearcam.kinds.gear_pair"
-
 KIND: Final = Kind(
     name=NAME,
     doc="a pair of non-circular gears",
@@ -257,7 +278,7 @@ KIND: Final = Kind(
         "blank": {"bore_diameter_mm": 8},
         "output": {"files": ["dxf", "csv", "report"]},
     },
-    shown={
+    samples={
         "goal": {
             "minimize": "pair.center_distance_mm",
             "maximize": "mesh.contact_ratio.forward.least",
@@ -287,11 +308,11 @@ KIND: Final = Kind(
         "pair": "give center_distance_mm or module_mm; the other is computed",
     },
     facts=deferred(f"{_HERE}.shown:facts"),
-    files=DeferredMapping(f"{_HERE}.shown:FILES"),
+    files=DeferredMapping(f"{_HERE}.shown:FILES", group_of(NAME, "formats")),
     charts=DeferredMapping(f"{_HERE}.drawn:CHARTS"),
     scene=deferred(f"{_HERE}.drawn:scene"),
     advice=deferred(f"{_HERE}.advice:PairAdvice"),
-    studies=DeferredMapping(f"{_HERE}.studies:STUDIES"),
+    studies=STUDIES,
     ladders=DeferredMapping(f"{_HERE}.studies:LADDERS"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
 )

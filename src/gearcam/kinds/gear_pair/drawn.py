@@ -1,4 +1,4 @@
-"""What is drawn of a gear pair: charts, its centrodes, the assembled pair, its scene."""
+"""What is drawn of a gear pair: charts over driver angles, and its scene."""
 
 from __future__ import annotations
 
@@ -22,17 +22,15 @@ from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
 from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Part
-from gearcam.pictures.charts import Chart, Charts, Limit, Line, MarkedPlace, knot_marks
+from gearcam.pictures.charts import Chart, Charts, Limit, Line, knot_marks
 from gearcam.pictures.drawings import (
     CENTER,
     CENTRODE,
     CROSS_SIZE,
     Cross,
-    Drawing,
     Feature,
     Path,
     part_features,
-    place,
 )
 from gearcam.pictures.scenes import PLACES, ContactPoints, MovingBody, Scene, still
 
@@ -52,12 +50,6 @@ _NOISE: Final = 1e-12
 """Share of a turn by which a knot may lie before its end: rounding."""
 
 
-def _knots(result: GearPairResult) -> tuple[MarkedPlace, ...]:
-    """Return the knots of the law within the driver's turn, or its travel."""
-    end = float(result.phases[-1]) * (1.0 - _NOISE)
-    return knot_marks(np.degrees(result.knots), 0.0, math.degrees(end))
-
-
 def _chart(
     result: GearPairResult,
     title: str,
@@ -67,13 +59,14 @@ def _chart(
     limits: Sequence[Limit] = (),
 ) -> Chart:
     """Return a chart over driver angles, degrees, with the lines by label and the knots."""
+    end = float(result.phases[-1]) * (1.0 - _NOISE)
     return Chart(
         title=title,
         x=DRIVER,
         y=y,
         lines=tuple(Line(label=label, x=phi1, y=values) for label, values in lines.items()),
         limits=tuple(limits),
-        marks=_knots(result),
+        marks=knot_marks(np.degrees(result.knots), 0.0, math.degrees(end)),
     )
 
 
@@ -246,65 +239,6 @@ CHARTS: Final[Charts] = {
 """Functions that return the charts by name; the report leads with the first three."""
 
 
-_POINTS: Final = 720
-"""Intervals of a centrode that is drawn."""
-
-
-def centrode_path(gear: Gear, end: float) -> Path:
-    """Return the centrode of a `gear` as a chain in its own frame, to the driver angle `end`."""
-    closed = gear.toothing.closed
-    phi1 = np.linspace(0.0, end, _POINTS + 1)[: -1 if closed else None]
-    return Path(points=gear.toothing.frames(phi1).p, closed=closed)
-
-
-def pair_drawing(
-    parts: Sequence[Part],
-    center_distance: float,
-    centrodes: Sequence[Path] = (),
-    *,
-    poses: tuple[Pose, Pose] | None = None,
-) -> Drawing:
-    """Return the drawing of the assembled pair.
-
-    By default phi1 = 0: wheel 1 in its own frame, wheel 2 shifted by the centre distance.
-
-    Parameters
-    ----------
-    parts : two Part
-        Driver first.
-    center_distance : float, mm
-        Position of the second shaft on x, negative for a ring; 0 for a rack, which has none.
-    centrodes : sequence of Path
-        In the wheels' own frames, driver first; may be empty.
-    poses : two Pose, optional
-        Where the wheels are.
-
-    Returns
-    -------
-    Drawing
-
-    Raises
-    ------
-    ValueError
-        If there are not two parts, or centrodes for another number of wheels.
-    """
-    if len(parts) != 2 or len(centrodes) not in (0, 2):
-        raise ValueError("a pair takes two parts, and two centrodes or none")
-    poses = poses or (Pose(), Pose(shift=center_distance))
-    features: list[Feature] = []
-    numbered = enumerate(zip(parts, poses, strict=True), start=1)
-    # drawn later means on top: a wheel in its ring
-    for number, (part, pose) in sorted(numbered, key=lambda one: not one[1][0].inner):
-        features += place(part_features(part), pose, prefix=f"GEAR{number}_")
-    for path, pose in zip(centrodes, poses, strict=False):
-        features += place([Feature(layer=CENTRODE, shape=path)], pose)
-    size = CROSS_SIZE * (abs(center_distance) or float(np.ptp(parts[0].contour.vertices)))
-    for shaft in (0.0, center_distance) if center_distance else (0.0,):
-        cross = Cross(center=shaft, size=size)
-        features.append(Feature(layer=CENTER, shape=cross))
-    return Drawing(name="pair", features=tuple(features))
-
-
 def scene(result: GearPairResult, places: int = PLACES) -> Scene:
     """Return both wheels with their centrodes, points of contact, and the pitch point.
 
@@ -381,5 +315,5 @@ def _contacts(result: GearPairResult, phi1: Array, side: Side) -> ContactPoints:
         start=np.searchsorted(touching.step[chosen], np.append(at, at[-1] + 1)),
         point=touching.point[chosen],
         force=touching.force[chosen],
-        teeth=np.column_stack([pairs.tooth(1, j), pairs.tooth(2, j)]) - first + 1,
+        teeth=np.column_stack([wheel.number(j) for wheel in pairs.wheels]) - first + 1,
     )

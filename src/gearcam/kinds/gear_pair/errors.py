@@ -11,38 +11,26 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearcam.base.errors import InfeasibleError
-from gearcam.base.facts import Fact, extent
+from gearcam.base.facts import Fact, Tree, extent
 from gearcam.base.findings import limit_of, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import ARCSEC
+from gearcam.meshing.assembly import Assembly, alone, demand, given, random_assemblies
 from gearcam.meshing.error_checks import TRANSMISSION
-from gearcam.meshing.errors import (
-    Assembly,
-    Running,
-    alone,
-    cycle,
-    demand,
-    given,
-    largest,
-    of_error,
-    random_assemblies,
-    run,
-)
+from gearcam.meshing.errors import Running, cycle, largest, of_error, run
 from gearcam.meshing.settings import ERRORS
 from gearcam.numeric.arrays import as_complex
 from gearcam.numeric.bulges import flatten_bulges
 from gearcam.pictures.charts import Chart, Line
 from gearcam.results.outline_file import read_closed
-from gearcam.results.result import StudyResult
+from gearcam.results.study import StudyResult
 
 if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.result import GearPairResult
     from gearcam.meshing.half_teeth import HalfTeeth
     from gearcam.numeric.arrays import Array
-    from gearcam.results.kind import Study
-    from gearcam.results.result import Progress
+    from gearcam.results.study import Progress
 
-Tree = dict[str, Any]
 Run = Callable[[Assembly], Running]
 
 _SIZES: Final[Mapping[str, tuple[str, str, Callable[[Assembly], float]]]] = {
@@ -71,16 +59,14 @@ _SAGITTA: Final = 0.01
 """Chord error of flattened arcs of a measured outline, in chord tolerances of the design."""
 
 
-def study_errors(result: GearPairResult, study: Study, progress: Progress | None) -> StudyResult:
-    """Return the study of the errors of a pair (see `gearcam.meshing.errors`).
+def study_errors(result: GearPairResult, progress: Progress) -> StudyResult:
+    """Return the study of the errors of a pair (see `gearcam.meshing.assembly`).
 
     Parameters
     ----------
     result : GearPairResult
         The pair.
-    study : Study
-        The entry of the study.
-    progress : callable, optional
+    progress : Progress
         Called with what is computed, the number done and their total.
 
     Returns
@@ -101,8 +87,7 @@ def study_errors(result: GearPairResult, study: Study, progress: Progress | None
     count = 2 + len(each) + spec.assemblies
 
     def report(done: int) -> None:
-        if progress is not None:
-            progress("errors", done, count)
+        progress("errors", done, count)
 
     with result.stage("errors"):
         phi1 = cycle(gears, spec.steps, alike=every.alike and spec.alike)
@@ -138,7 +123,7 @@ def study_errors(result: GearPairResult, study: Study, progress: Progress | None
     lines |= {_WORDS[name]: one for name, one in running.items()}
     return StudyResult(
         result=result,
-        study=study,
+        study=result.kind.studies["errors"],
         file="errors.csv",
         table=_columns(phi1, without, together, running),
         group=group,
@@ -348,15 +333,12 @@ def _charts(lines: Mapping[str, Running], trials: Array, unit: str) -> dict[str,
     if len(found):
         bars = min(_BARS, 5 + math.isqrt(len(found)))
         counts, edges = np.histogram(found, bars)
+        # a stepped line with two points at each edge
+        heights = np.concatenate([[0.0], np.repeat(counts, 2), [0.0]])
         charts["trials"] = Chart(
             title="Transmission error of random assemblies",
             x=f"transmission error, peak to peak, {unit}",
             y="assemblies",
-            lines=(Line(label="assemblies", x=np.repeat(edges, 2), y=_steps(counts)),),
+            lines=(Line(label="assemblies", x=np.repeat(edges, 2), y=heights),),
         )
     return charts
-
-
-def _steps(counts: Array) -> Array:
-    """Return counts as the heights of a stepped line with two points at each edge."""
-    return np.concatenate([[0.0], np.repeat(counts, 2), [0.0]])

@@ -31,8 +31,8 @@ from gearcam.parts.rim import demand_bolts, is_around
 from gearcam.parts.shapes import Circle
 
 if TYPE_CHECKING:
-    from gearcam.kinds.gear_pair.result import GearPairResult
-    from gearcam.results.parts import Estimates
+    from gearcam.base.tolerances import Tolerances
+    from gearcam.gears.subject import CheckedPair
 
 Steps = tuple[tuple[Gear, Gear], ...]
 
@@ -217,58 +217,71 @@ _VOLUME: Final = (
 )
 
 
-def error_rows(result: GearPairResult) -> Estimates:
-    """Return the error estimates of a pair.
+def tooth_errors(subject: CheckedPair) -> dict[str, tuple[float, str]]:
+    """Return the error estimates of the teeth of a pair.
 
     Parameters
     ----------
-    result : GearPairResult
-        A built design.
+    subject : CheckedPair
+        The pair with its wheels.
 
     Returns
     -------
     dict of str to (float, str)
-        Estimate and method by name, without those of chords and files.
+        Estimate and method by name.
     """
-    driven, flank, contact_ratio = pair_errors(result.subject)
+    driven, flank, contact_ratio = pair_errors(subject)
+    pair = subject.pair
     how = "largest change if the law and its integrals change by their errors"
-    if result.law.function_error:
+    if pair.law.function_error:
         how += ", with that of the expansion of the Python function"
-    area = max(gear.profile.chord_error * gear.profile.contour.length for gear in result.gears)
-    rack = result.pair.on_rack
-    name = "travel_mm" if rack else "driven_angle_rad"
-    rows = {
-        name: (result.pair.center_distance * driven if rack else driven, how),
+    area = max(gear.profile.chord_error * gear.profile.contour.length for gear in subject.gears)
+    name, scale = ("travel_mm", pair.center_distance) if pair.on_rack else ("driven_angle_rad", 1.0)
+    return {
+        name: (scale * driven, how),
         "flank_mm": (flank, how),
         "contact_ratio": (contact_ratio, how),
         "area_mm2": (area, "chord error times the length of the outline"),
     }
-    if result.ordered:
-        steps = zip(result.parts, *result.steps, strict=True)
-        volumes = [
-            _volume(result, part, gears, flank)
-            for number, (part, *gears) in enumerate(steps, 1)
-            if result.design.blank.wheel(number).density is not None
-        ]
-        if volumes:
-            rows["volume_mm3"] = max(volumes), _VOLUME
-    return rows
 
 
-def _volume(result: GearPairResult, part: Part, gears: Sequence[Gear], flank: float) -> float:
+def volume_errors(
+    parts: Sequence[Part], steps: Steps, design: GearPairDesign, flank: float, within: Tolerances
+) -> dict[str, tuple[float, str]]:
+    """Return the error estimate of volumes, as of `tooth_errors`; empty without a density.
+
+    Parameters
+    ----------
+    parts : two Part
+        Both wheels, driver first.
+    steps : tuple of (Gear, Gear)
+        Both wheels of each step, from below.
+    design : GearPairDesign
+        The design.
+    flank : float, mm
+        Error of the points of flanks.
+    within : Tolerances
+        Internal accuracy.
+    """
+    volumes = [
+        _volume(part, gears, design, flank, within)
+        for number, (part, *gears) in enumerate(zip(parts, *steps, strict=True), 1)
+        if design.blank.wheel(number).density is not None
+    ]
+    return {"volume_mm3": (max(volumes), _VOLUME)} if volumes else {}
+
+
+def _volume(
+    part: Part, gears: Sequence[Gear], design: GearPairDesign, flank: float, within: Tolerances
+) -> float:
     """Return the error of the volume of a part, mm^3, from the wheel of each of its steps."""
     height, off = part.width / len(gears), quadrature_error(part)
     for gear in gears:
         outline = gear.profile
         area = outline.kinks_missed + flank * outline.contour.length
         if outline.flanks.traced:
-            finer = make_gear(
-                gear.pair,
-                gear.wheel,
-                outline.tolerance / _FINER,
-                result.tolerances,
-                result.design.ring,
-            )
+            tolerance = outline.tolerance / _FINER
+            finer = make_gear(gear.pair, gear.wheel, tolerance, within, design.ring)
             area += _TRACED * abs(_toothed(finer) - _toothed(gear))
         off += height * area
     return off

@@ -1,10 +1,9 @@
-"""The result of a gear pair: its stages, parts, and tables over driver angles."""
+"""The result of a gear pair: tables over driver angles, drawings, findings."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Literal, get_args
@@ -12,41 +11,29 @@ from typing import TYPE_CHECKING, ClassVar, Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
-from gearcam.base.findings import Finding, in_order, limit_of, run_checks
+from gearcam.base.findings import Finding, in_order, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.gears import checks  # noqa: F401  (its checks register themselves)
-from gearcam.gears.pair import Gear, GearPair, leads, lobes_of, make_gear, make_pair, stepped
-from gearcam.gears.rack_limits import demand_rim, demand_ring
-from gearcam.gears.spec import Finish
-from gearcam.gears.subject import KIND, CheckedPair
-from gearcam.gears.track import Wheel
-from gearcam.kinds.gear_pair.design import GearPairDesign
+from gearcam.gears.subject import KIND
+from gearcam.kinds.gear_pair.made import WHOLE, MadePair
 from gearcam.kinds.gear_pair.tables import (
     centrode_columns,
     contact_ratio_columns,
     contact_rows,
     motion_columns,
 )
-from gearcam.laws.ratio.base import RatioLaw
-from gearcam.laws.ratio.span import angle_text, is_open
 from gearcam.meshing import drive_checks  # noqa: F401  (its checks register themselves)
 from gearcam.meshing.contact import Contacts, contacts
 from gearcam.numeric.arguments import angles, one_of, whole
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
 from gearcam.numeric.piecewise import with_both_sides
-from gearcam.numeric.sampling import MARGIN
 from gearcam.parts.blank import KIND as PARTS_KIND
-from gearcam.parts.blank import Blank
-from gearcam.results.parts import CHORDS, Estimates, PartsResult
-from gearcam.results.result import Progress, StudyResult
+from gearcam.results.parts import CHORDS
+from gearcam.results.study import Progress, StudyResult
 
 if TYPE_CHECKING:
     from gearcam.gears.contact import FlankPairs
-    from gearcam.numeric.pose import Pose
-    from gearcam.parts.body import Part
-    from gearcam.parts.checks import CheckedParts
     from gearcam.pictures.drawings import Drawing, Path
     from gearcam.sheets.sheet import Sheet
 
@@ -59,17 +46,11 @@ ROUNDING = 1e-12
 _OF_TEETH = ("contact-ratio", "undercut", "thin-tip", "short-flank", "tips-collide")
 """Checks whose findings can differ between the steps of stepped wheels."""
 
-_PLAIN = frozenset({"csv", "inspection"})
-"""Files that need only the teeth."""
-
-_WHOLE = 1e-9
-"""Share of a lobe or travel by which an end may exceed it: rounding."""
-
 CENTRODE_POINTS = 720
 """Intervals of phi1 over which centrodes are tabulated: half degrees for a full turn."""
 
 
-class GearPairResult(PartsResult):
+class GearPairResult(MadePair):
     """Result of the design of a gear pair, computed on demand.
 
     Parameters
@@ -88,9 +69,6 @@ class GearPairResult(PartsResult):
     array([  0., 360.])
     """
 
-    design: GearPairDesign
-    before_output = ("law", "pair")
-    before_studies = ("steps",)
     stages: ClassVar[Mapping[str, str]] = {
         "law": "law",
         "centrodes": "pair",
@@ -100,133 +78,12 @@ class GearPairResult(PartsResult):
     }
 
     @cached_property
-    def law(self) -> RatioLaw:
-        """The ratio law."""
-        parameters, pair = self.design.law, self.design.pair
-        with self.stage("law"), self.naming_rows():
-            if not is_open(parameters):
-                demand_ring(pair)
-            law = parameters.build(lobes_of(pair), self.tolerances)
-            _demand_reached(self.design.output.pose, law)
-        return law
-
-    @cached_property
-    def pair(self) -> GearPair:
-        """The centrodes with their cutters."""
-        law = self.law
-        with self.stage("centrodes"), self.naming_rows():
-            return make_pair(
-                law,
-                self.design.pair,
-                self.design.rack,
-                self.tolerances,
-                self._finish,
-                self.design.ring.cutter_teeth,
-            )
-
-    @property
-    def _finish(self) -> tuple[Finish, Finish]:
-        """Clearance and rounding of both wheels' teeth."""
-        blanks = (self.design.blank.wheel(number) for number in (1, 2))
-        first, second = (
-            Finish(clearance=blank.clearance, tip_rounding=blank.tip_rounding) for blank in blanks
-        )
-        return first, second
-
-    @cached_property
-    def gear1(self) -> Gear:
-        """The driver."""
-        return self._gear(1, self.pair)
-
-    @cached_property
-    def gear2(self) -> Gear:
-        """The driven wheel."""
-        return self._gear(2, self.pair)
-
-    @cached_property
-    def steps(self) -> tuple[tuple[Gear, Gear], ...]:
-        """Both wheels of each step, from below; one step where the wheels are not stepped."""
-        pairs = [stepped(self.pair, moved) for moved in self.leads]
-        return self.gears, *((self._gear(1, pair), self._gear(2, pair)) for pair in pairs[1:])
-
-    @property
-    def leads(self) -> tuple[float, ...]:
-        """Tooth offsets of the steps, mm along the pitch curves."""
-        return leads(self.pair, self.design.steps)
-
-    def _gear(self, wheel: Wheel, pair: GearPair) -> Gear:
-        with self.stage(f"gear{wheel}"):
-            tolerance = pair.chord_tolerance(self.design.output.chord_tolerance)
-            gear = make_gear(pair, wheel, tolerance, self.tolerances, self.design.ring)
-            if self._too_wide(gear):
-                raise self._bore_refusal(gear, tolerance)
-            if gear.hollow:
-                limit = limit_of(KIND, "thin-rim", self.design.limits) * pair.module
-                demand_rim(self.design.ring, gear.largest_radius, pair.module, limit)
-            return gear
-
-    def _too_wide(self, gear: Gear) -> bool:
-        """Whether the bore of a wheel reaches the root of its teeth."""
-        bore = self.bores[gear.wheel - 1]
-        return bore is not None and 0.5 * bore >= gear.least_radius
-
-    def _bore_refusal(self, gear: Gear, tolerance: float) -> InfeasibleError:
-        """Return the refusal of the bore of a wheel, and of its mate's where that is too wide."""
-        wheels, key = [gear], "blank.bore_diameter_mm"
-        if gear.wheel == 1:  # the driven wheel has not been made yet
-            with suppress(InfeasibleError):
-                mate = make_gear(gear.pair, 2, tolerance, self.tolerances, self.design.ring)
-                wheels += [mate] * self._too_wide(mate)
-        names = [f"{key}[{one.wheel - 1}]" for one in wheels]
-        # the limit holds for the circle around bore and keyway
-        limits = [2.0 * one.least_radius for one in wheels]
-        bores = [self.bores[one.wheel - 1] or 0.0 for one in wheels]
-        diameters = [self.design.blank.wheel(one.wheel).bore for one in wheels]
-        rim = 2.0 * limit_of(KIND, "thin-rim", self.design.limits) * gear.pair.module
-        # the largest bore that keeps the limit of the rim, or without any that meets the roots
-        near = [
-            diameters[k] - bores[k] + limit - (rim if rim < 0.9 * limit else 0.0)
-            for k, limit in enumerate(limits)
-        ]
-        worst, notes = limits.index(min(limits)), [*map(_room, wheels)]
-        where = f"wheel {gear.wheel}, {names[0]}"
-        if len(wheels) > 1:
-            where = f"wheels 1 and 2, {key}"
-            notes.append(f"both take less than {formatted(limits[worst])} mm")
-            if diameters[0] == diameters[1]:
-                names, near, limits = [key], [min(near)], [limits[worst]]
-        if diameters != bores:
-            notes.append("limits hold for the circle around bore and keyway")
-        what = "the bore reaches the root of the teeth"
-        adjustments = (
-            Adjustment(
-                near=dict(zip(names, near, strict=True)),
-                far={name: 0.1 * limit for name, limit in zip(names, limits, strict=True)},
-            ),
-        )
-        return beyond_limit(
-            what, where, bores[worst], min(limits), "; ".join(notes), adjustments=adjustments
-        )
-
-    @property
-    def gears(self) -> tuple[Gear, Gear]:
-        """Both wheels, driver first."""
-        return self.gear1, self.gear2
-
-    @property
-    def bores(self) -> tuple[float | None, float | None]:
-        """Bore diameters, mm, including keyways; None for racks and rings."""
-        blanks = (self.design.blank.wheel(number).widened for number in (1, 2))
-        first, second = (2.0 * blank.bore_reach for blank in blanks)
-        return first or None, None if self.pair.on_rack else second or None
-
-    @cached_property
     def checked(self) -> tuple[Finding, ...]:
         """Findings of the checks, errors first."""
         steps, limits = self.steps, self.design.limits
         parts = self.parts_subject if self.ordered else None
         with self.stage("checks"):
-            findings = [*run_checks(KIND, self.subject, limits), *self.row_findings]
+            findings = [*run_checks(KIND, self.subject, limits), *self.rows.findings]
             for number, gears in enumerate(steps[1:], start=2):
                 findings += (
                     replace(finding, where=f"step {number}, {finding.where}")
@@ -237,82 +94,15 @@ class GearPairResult(PartsResult):
                 findings += run_checks(PARTS_KIND, parts, limits)
         return in_order(findings)
 
-    @cached_property
-    def subject(self) -> CheckedPair:
-        """Input of the checks of teeth; for stepped wheels the lowest step."""
-        return self._subject(self.gears)
-
-    def _subject(self, gears: tuple[Gear, Gear]) -> CheckedPair:
-        rim = None
-        if gears[1].ring:
-            rim = self.design.ring.least_rim(gears[1].largest_radius, self.pair.module)
-        return CheckedPair(pair=gears[0].pair, gears=gears, bores=self.bores, rim=rim)
-
-    @cached_property
-    def parts_subject(self) -> CheckedParts:
-        """Input of the checks of parts."""
-        from gearcam.kinds.gear_pair.parts import parts_subject
-
-        return parts_subject(self.parts, self.gears, self.design.output.kerf)
-
-    @property
-    def ordered(self) -> bool:
-        """Whether the design needs parts: a blank, files of parts, an outside that follows roots.
-
-        Whether such an outside is possible is known only when it is made; for a round one the rim
-        decides.
-        """
-        asked = self.design.blank != Blank() or self.design.ring.outer == "follow"
-        return asked or not set(self.design.output.files) <= _PLAIN
-
-    @cached_property
-    def parts(self) -> tuple[Part, Part]:
-        """Both wheels as parts, with openings, hubs, marks, clearance and rounded edges."""
-        from gearcam.kinds.gear_pair.parts import make_parts
-
-        _ = self.steps  # timed separately
-        with self.stage("parts"):
-            return make_parts(self.steps, self.design)
-
-    @property
-    def plates(self) -> tuple[Drawing, ...]:
-        """A drawing of each step of both wheels, in its own frame."""
-        from gearcam.pictures.drawings import wheel_drawing
-
-        return tuple(
-            wheel_drawing(part, step) for part in self.parts for step in range(len(part.contours))
-        )
-
     @property
     def references(self) -> tuple[Drawing, ...]:
         """The assembled pair, beside the cutting paths."""
         return (self.drawing,)
 
-    @property
-    def assembly(self) -> str:
-        """Stem of the files of the assembled pair."""
-        return "pair"
-
-    @property
-    def poses(self) -> tuple[Pose, Pose]:
-        """Where the wheels are in the assembly: wheel 1 turned by -phi1."""
-        return self.pair.rolling.poses(self.design.output.pose)
-
-    @property
-    def profile_tolerance(self) -> float:
-        """Chord tolerance of the outlines, mm."""
-        return self.gear1.profile.tolerance
-
-    @property
-    def chord_error(self) -> float:
-        """Largest chord error of the outlines, mm."""
-        # the largest distance from a chord may lie between the places where it is measured
-        return max(gear.profile.chord_error for gear in self.gears) / MARGIN
-
     @cached_property
     def centrode_paths(self) -> tuple[Path, Path]:
         """Both centrodes as chains, each in its wheel's own frame, driver first."""
-        from gearcam.kinds.gear_pair.drawn import centrode_path
+        from gearcam.kinds.gear_pair.drawings import centrode_path
 
         lobes = self.law.lobes
         end = self.centrode_angles(2)[-1] if self.pair.on_rack else lobes.n2 * lobes.period
@@ -324,7 +114,7 @@ class GearPairResult(PartsResult):
     @cached_property
     def drawing(self) -> Drawing:
         """The assembled pair, with its centrodes."""
-        from gearcam.kinds.gear_pair.drawn import pair_drawing
+        from gearcam.kinds.gear_pair.drawings import pair_drawing
 
         return pair_drawing(self.parts, self.pair.shift, self.centrode_paths, poses=self.poses)
 
@@ -340,12 +130,6 @@ class GearPairResult(PartsResult):
         radius = float(abs(self.pair.rolling.tracks[0].frames(np.array([pose])).p[0]))
         pair = pair_sheet(self.drawing, self.pair.shift, rows, design.name, pitch_radius=radius)
         return *super().sheets, pair
-
-    def rows_of(self, number: int) -> Sequence[str]:
-        """Return the names of the facts in the table of a wheel's drawing, by its `number`."""
-        from gearcam.kinds.gear_pair.sheet import wheel_rows
-
-        return wheel_rows(number)
 
     def centrode_angles(self, count: int | None = None) -> Array:
         """Return driver angles, rad, until both wheels close, or over the travel, both ends.
@@ -381,7 +165,7 @@ class GearPairResult(PartsResult):
     def knots(self) -> Array:
         """Knots of the law, rad, repeated until both wheels close, or to the end of travel."""
         period, knots = self.law.period, np.asarray(self.law.knots, dtype=float)
-        lobes = math.ceil(self.centrode_angles(2)[-1] / period * (1.0 - _WHOLE))
+        lobes = math.ceil(self.centrode_angles(2)[-1] / period * (1.0 - WHOLE))
         return np.concatenate([knots[:1], *(knots[1:] + lobe * period for lobe in range(lobes))])
 
     def centrodes(self, n: int | None = None) -> Columns:
@@ -506,13 +290,6 @@ class GearPairResult(PartsResult):
             for side, points in self.touching.items()
         }
 
-    @cached_property
-    def error_rows(self) -> Estimates:
-        """Error estimates and their methods by name, without those of chords and files."""
-        from gearcam.kinds.gear_pair.parts import error_rows
-
-        return error_rows(self)
-
     @property
     def main_errors(self) -> Sequence[tuple[str, Sequence[str]]]:
         """Errors that users act on (see `Result`)."""
@@ -577,28 +354,3 @@ class GearPairResult(PartsResult):
             If it was interrupted before the first steps were done.
         """
         return self.with_settings("meshing", settings).study("mesh", progress)
-
-
-def _room(gear: Gear) -> str:
-    """Return how wide the bore of a wheel may be, and why its root comes so near to the axis."""
-    ends = gear.pair.law.ratio_range
-    (place, ratio), (_, other) = ends if gear.wheel == 1 else reversed(ends)
-    room = f"wheel {gear.wheel} takes less than {formatted(2.0 * gear.least_radius)} mm"
-    if math.isclose(ratio, other, rel_tol=_WHOLE):
-        return room
-    return (
-        f"{room}: its teeth come nearest to the axis at {angle_text(place)}, where the law's ratio "
-        f"is {formatted(ratio)}"
-    )
-
-
-def _demand_reached(pose: float, law: RatioLaw) -> None:
-    """Refuse to draw an open pair at a driver angle, rad, outside its travel."""
-    if law.lobes.closed or 0.0 <= pose <= (1.0 + _WHOLE) * law.period:
-        return
-    key, limit = "output.phi1_deg", math.degrees(min(max(pose, 0.0), law.period))
-    what = "the drawing angle lies outside the driver's travel"
-    note = f"the driver turns from 0 to {formatted(math.degrees(law.period))} deg"
-    raise beyond_limit(
-        what, key, math.degrees(pose), limit, note, far=0.5 * math.degrees(law.period)
-    )

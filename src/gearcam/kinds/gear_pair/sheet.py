@@ -33,16 +33,31 @@ LEVELS: Final = 3
 """Linear dimensions below the wheels."""
 
 _RACK_ROWS: Final = (
-    "pair.rack.pressure_angle_deg", "pair.rack.addendum", "pair.rack.dedendum",
-    "pair.backlash_mm", "pair.face_width_mm", "steps.count",
-)  # fmt: skip
+    "pair.rack.pressure_angle_deg",
+    "pair.rack.addendum",
+    "pair.rack.dedendum",
+    "pair.backlash_mm",
+    "pair.face_width_mm",
+    "steps.count",
+)
 PAIR_ROWS: Final = (
-    "pair.module_mm", "pair.teeth", "pair.ratio", "pair.travel_per_turn_mm", *_RACK_ROWS,
-)  # fmt: skip
+    "pair.module_mm",
+    "pair.teeth",
+    "pair.ratio",
+    "pair.travel_per_turn_mm",
+    *_RACK_ROWS,
+)
 _GEAR_ROWS: Final = (
-    "profile_shift", "centrode.length_mm", "cutter", "clearance_mm", "tip_rounding_mm",
-    "density_kg_m3", "mass.mass_kg", "mass.centroid_mm", "mass.unbalance_g_mm",
-)  # fmt: skip
+    "profile_shift",
+    "centrode.length_mm",
+    "cutter",
+    "clearance_mm",
+    "tip_rounding_mm",
+    "density_kg_m3",
+    "mass.mass_kg",
+    "mass.centroid_mm",
+    "mass.unbalance_g_mm",
+)
 """Facts in the tables of drawings."""
 
 

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.base.facts import Fact, Facts, extent
+from gearcam.base.facts import Fact, Facts, Tree, extent
 from gearcam.base.findings import limit_of
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import RPM
@@ -27,8 +26,6 @@ if TYPE_CHECKING:
     from gearcam.gears.contact import FlankPairs
     from gearcam.gears.pair import Gear
     from gearcam.kinds.gear_pair.result import GearPairResult
-
-Tree = dict[str, Any]
 
 
 def facts(result: GearPairResult) -> Facts:
@@ -192,7 +189,7 @@ def _contact_ratios(sides: tuple[FlankPairs, ...], limit: float) -> Iterator[tup
     """Yield the contact ratio of each side; one line is shown if both are equal."""
     rows = []
     for pairs in reversed(sides):
-        ratios = pairs.contact_ratios
+        ratios = pairs.arcs.ratios
         rows.append((pairs, {"least": float(ratios.min()), "mean": float(ratios.mean())}))
     alike = all(
         math.isclose(rows[0][1][name], rows[1][1][name], rel_tol=1e-9) for name in ("least", "mean")
@@ -232,25 +229,6 @@ def _rim(subject: CheckedPair, limit: float) -> Fact | None:
     return Fact(rim, "thinnest rim", at_least=limit, place=f"wheel {wheel}", shown=True)
 
 
-_ROUNDING = 1e-9
-"""Smaller lengths in a study, mm, are rounding."""
-
-_STUDIED: Mapping[str, str] = {
-    "center_distance_mm": "centre distance as mounted",
-    "overclosure_deg": "overclosure of the driver",
-    "contact_ratio": "contact ratio",
-    "pairs_in_contact": "pairs in contact",
-    "interference_steps": "phases with interference",
-    "backlash_mm": "backlash along the pitch curve",
-    "lag_mm": "lag of the driven wheel, backlash taken up",
-    "penetration_mm": "penetration of flanks",
-    "chord_error_mm": "chord error of outlines",
-    "overlap_max_mm3": "largest overlap of two teeth",
-    "overlap_sum_mm3": "overlaps of all phases together",
-    "bearing_length_mm": "length over which a tooth bears",
-}
-"""Labels of the numbers of a study that are always shown."""
-
 _SOLVED: Mapping[str, tuple[str, str]] = {
     "ratios": ("ratio", ""),
     "knots_deg": ("angle of knot", "deg"),
@@ -271,37 +249,6 @@ _SOLVED: Mapping[str, tuple[str, str]] = {
     "crank_angle_at_start_deg": ("crank angle at the start", "deg"),
 }
 """Labels and units of what was left to the program, by the names without places in lists."""
-
-
-def meshing_facts(numbers: Mapping[str, Any]) -> Tree:
-    """Return the numbers of a study as facts."""
-    first = {name: numbers[name] for name in ("steps_done", *_STUDIED) if name in numbers}
-    tree: Tree = {**first, **numbers}
-    done, asked = numbers["steps_done"], numbers["steps"]
-    place = "" if numbers["complete"] else f"of {asked}"
-    tree["steps_done"] = Fact(done, "phases studied", place=place, shown=True)
-    for name, meaning in _STUDIED.items():
-        if name in numbers:
-            tree[name] = Fact(numbers[name], meaning, shown=True, noise=_ROUNDING)
-    error = numbers.get("transmission_error")
-    if error is not None:
-        unit, least = error["unit"], error["known_to"]
-        peak = Fact(
-            error["peak_to_peak"], "transmission error, peak to peak", unit=unit, shown=True
-        )
-        if not peak.value:
-            peak = replace(peak, place=f"known to {formatted(least, 1)} {unit}")
-        least_error = Fact(least, "transmission error, known to", unit=unit)
-        tree["transmission_error"] = error | {"known_to": least_error, "peak_to_peak": peak}
-        if "no_harmonics" in error:
-            missing = Fact(error["no_harmonics"], "no harmonics, because of", shown=True)
-            tree["transmission_error"]["no_harmonics"] = missing
-        elif error["harmonics"]:
-            largest = max(error["harmonics"], key=lambda one: one["amplitude"])
-            words = f"largest harmonic, {largest['order']} per turn"
-            harmonic = Fact(largest["amplitude"], words, unit=unit, shown=True)
-            tree["transmission_error"]["largest_harmonic"] = harmonic
-    return tree
 
 
 def _gear(result: GearPairResult, gear: Gear) -> Tree:

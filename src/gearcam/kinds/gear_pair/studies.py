@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from gearcam.base.facts import Fact, Tree
 from gearcam.base.findings import run_checks
+from gearcam.base.numerals import formatted
 from gearcam.gears.pair import COARSEST, FINEST, FLANK_POINTS, make_gear
 from gearcam.gears.track import WHEELS
-from gearcam.kinds.shared import accuracy_study
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.piecewise import Piecewise
 from gearcam.numeric.sampling import Sampler
-from gearcam.results.kind import Study
 from gearcam.results.ladders import (
     CHORD_ORDER,
     COARSER,
@@ -29,7 +29,7 @@ from gearcam.results.ladders import (
     solid_ladder,
     tolerances_around,
 )
-from gearcam.results.result import StudyResult
+from gearcam.results.study import StudyResult
 
 if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.design import GearPairDesign
@@ -38,15 +38,51 @@ if TYPE_CHECKING:
     from gearcam.numeric.arrays import Ints
     from gearcam.pictures.charts import Chart
     from gearcam.pictures.scenes import ContactPoints, Scene
-    from gearcam.results.result import Progress
+    from gearcam.results.study import Progress
 
 _CLOSE: Final = 1e-9
 """Driver angles closer than this, degrees, are the same."""
 
 
-def _mesh(result: GearPairResult, progress: Progress | None) -> StudyResult:
-    """Return the meshing of a pair as mounted; incomplete if it was interrupted."""
-    from gearcam.kinds.gear_pair.shown import meshing_facts
+_NOISE: Final = 1e-9
+"""Smaller lengths in a study, mm, are rounding."""
+
+_STUDIED: Final = {
+    "center_distance_mm": "centre distance as mounted",
+    "overclosure_deg": "overclosure of the driver",
+    "contact_ratio": "contact ratio",
+    "pairs_in_contact": "pairs in contact",
+    "interference_steps": "phases with interference",
+    "backlash_mm": "backlash along the pitch curve",
+    "lag_mm": "lag of the driven wheel, backlash taken up",
+    "penetration_mm": "penetration of flanks",
+    "chord_error_mm": "chord error of outlines",
+    "overlap_max_mm3": "largest overlap of two teeth",
+    "overlap_sum_mm3": "overlaps of all phases together",
+    "bearing_length_mm": "length over which a tooth bears",
+}
+"""Labels of the numbers of a study that are always shown."""
+
+
+def study_mesh(result: GearPairResult, progress: Progress) -> StudyResult:
+    """Return the meshing of a pair as mounted; incomplete if it was interrupted.
+
+    Parameters
+    ----------
+    result : GearPairResult
+        The pair.
+    progress : callable
+        Told of the steps done and their number.
+
+    Returns
+    -------
+    StudyResult
+
+    Raises
+    ------
+    InfeasibleError
+        If the wheels, or their meshing, are impossible.
+    """
     from gearcam.meshing.checks import KIND
     from gearcam.meshing.numbers import numbers
     from gearcam.meshing.study import study
@@ -63,10 +99,10 @@ def _mesh(result: GearPairResult, progress: Progress | None) -> StudyResult:
     done = f"{len(meshing.phi1)} of {meshing.asked} steps"
     return StudyResult(
         result=result,
-        study=MESH,
+        study=result.kind.studies["mesh"],
         file="meshing.csv",
         table=meshing.columns,
-        group=meshing_facts(numbers(meshing)),
+        group=_facts(numbers(meshing)),
         study_findings=findings,
         drawn=partial(_charts, result, meshing),
         overlay=_contacts(meshing),
@@ -74,9 +110,40 @@ def _mesh(result: GearPairResult, progress: Progress | None) -> StudyResult:
     )
 
 
+def _facts(numbers: Mapping[str, Any]) -> Tree:
+    """Return the numbers of the study as facts."""
+    first = {name: numbers[name] for name in ("steps_done", *_STUDIED) if name in numbers}
+    tree: Tree = {**first, **numbers}
+    done, asked = numbers["steps_done"], numbers["steps"]
+    place = "" if numbers["complete"] else f"of {asked}"
+    tree["steps_done"] = Fact(done, "phases studied", place=place, shown=True)
+    for name, meaning in _STUDIED.items():
+        if name in numbers:
+            tree[name] = Fact(numbers[name], meaning, shown=True, noise=_NOISE)
+    error = numbers.get("transmission_error")
+    if error is not None:
+        unit, least = error["unit"], error["known_to"]
+        peak = Fact(
+            error["peak_to_peak"], "transmission error, peak to peak", unit=unit, shown=True
+        )
+        if not peak.value:
+            peak = replace(peak, place=f"known to {formatted(least, 1)} {unit}")
+        least_error = Fact(least, "transmission error, known to", unit=unit)
+        tree["transmission_error"] = error | {"known_to": least_error, "peak_to_peak": peak}
+        if "no_harmonics" in error:
+            missing = Fact(error["no_harmonics"], "no harmonics, because of", shown=True)
+            tree["transmission_error"]["no_harmonics"] = missing
+        elif error["harmonics"]:
+            largest = max(error["harmonics"], key=lambda one: one["amplitude"])
+            words = f"largest harmonic, {largest['order']} per turn"
+            harmonic = Fact(largest["amplitude"], words, unit=unit, shown=True)
+            tree["transmission_error"]["largest_harmonic"] = harmonic
+    return tree
+
+
 def _condition(design: GearPairDesign) -> Condition:
     """Return the errors of a design, and how to make its solids, if it asks for them."""
-    from gearcam.meshing.errors import given
+    from gearcam.meshing.assembly import given
     from gearcam.meshing.study import Condition
 
     spec, width, count = design.meshing, design.pair.face_width, design.steps.count
@@ -187,38 +254,6 @@ def _at_places(
     chosen = np.concatenate(rows).astype(int)
     start = np.cumsum([0, *map(len, rows)])
     return {"as mounted": ContactPoints(start=start, point=point[chosen], force=force[chosen])}
-
-
-MESH: Final = Study(
-    name="mesh",
-    key="meshing",
-    doc="Study the meshing of gear pairs step by step; write DIR/NAME/meshing.csv.",
-    done="meshed",
-    table="meshing",
-    compute=_mesh,
-    options={"center_distance_mm": "center"},
-    repeats=("contact-ratio",),  # the study checks the drive as mounted
-)
-
-
-def _errors(result: GearPairResult, progress: Progress | None) -> StudyResult:
-    from gearcam.kinds.gear_pair.errors import study_errors
-
-    return study_errors(result, ERRORS, progress)
-
-
-ERRORS: Final = Study(
-    name="errors",
-    key="errors",
-    doc="Study errors of mounting and making of gear pairs; write DIR/NAME/errors.csv.",
-    done="studied",
-    table="errors",
-    compute=_errors,
-    options={"eccentricity_deg": "eccentricity-angle", "file": "pitch"},
-)
-
-STUDIES: Final[dict[str, Study]] = {one.name: one for one in (MESH, ERRORS, accuracy_study())}
-"""The studies by name."""
 
 
 _FLANKS: Final = (2, 3, 5, 9, FLANK_POINTS, 33, 65, 129)

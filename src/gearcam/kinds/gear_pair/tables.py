@@ -89,8 +89,8 @@ def contact_rows(pair: GearPair, pairs: FlankPairs, phi1: Array, points: Contact
         {
             "phi1_deg": np.degrees(phi1)[points.step],
             "phi2_deg" if guide.turns else "travel_mm": moved[points.step],
-            "tooth1": pairs.tooth(1, points.pair),
-            "tooth2": pairs.tooth(2, points.pair),
+            "tooth1": pairs.wheels[0].number(points.pair),
+            "tooth2": pairs.wheels[1].number(points.pair),
             "side": np.full(points.pair.shape, pairs.side),
             "pairs": np.bincount(points.step, minlength=len(phi1))[points.step],
             "x_mm": points.point.real,
@@ -107,14 +107,14 @@ def contact_ratio_columns(sides: tuple[FlankPairs, ...]) -> Columns:
     """Return the contact ratio of every pair of flanks of both `sides`, driving side first."""
     blocks = []
     for pairs in sorted(sides, key=lambda pairs: pairs.side == COAST):
-        start, end = pairs.arcs
+        start, end = pairs.arcs.start, pairs.arcs.end
         touching = start < end
         blocks.append(
             {
-                "tooth1": pairs.tooth(1, pairs.numbers),
-                "tooth2": pairs.tooth(2, pairs.numbers),
+                "tooth1": pairs.wheels[0].number(pairs.numbers),
+                "tooth2": pairs.wheels[1].number(pairs.numbers),
                 "side": np.full(pairs.numbers.shape, pairs.side),
-                "contact_ratio": pairs.contact_ratios,
+                "contact_ratio": pairs.arcs.ratios,
                 "from_deg": np.degrees(np.where(touching, start, np.nan)),
                 "to_deg": np.degrees(np.where(touching, end, np.nan)),
             }

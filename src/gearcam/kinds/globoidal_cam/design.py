@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Final
+from typing import Any, Final
 
+from gearcam.base.brought import group_of
 from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.designs.design import Design
 from gearcam.designs.faults import Fault
 from gearcam.designs.nodes import Choice
 from gearcam.designs.outputs import MESHES, files_param, studies_param
 from gearcam.designs.table import table_of
-from gearcam.kinds.shared import AccuracySpec, GoalSpec, GriddedOutput
-from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.kinds.shared import ACCURACY, AccuracySpec, GoalSpec, GriddedOutput
+from gearcam.laws.motion import MOTION_LAWS
 from gearcam.mechanics.drive import DriveSpec
-from gearcam.results.kind import Kind
+from gearcam.results.kind import Kind, studies_of
 from gearcam.spatial.globoidal_spec import GloboidalSpec, IndexSpec, TurretSpec
 from gearcam.spatial.spec import CylinderBlank
 
@@ -35,6 +36,14 @@ INDEX: Final = Choice(
     listing="Globoidal indexing cams have the motion laws of cams, in the table [index]",
 )
 """The table ``[index]``."""
+
+_HERE: Final = "gearcam.kinds.globoidal_cam"
+
+STUDIES: Final = studies_of(
+    NAME,
+    ACCURACY,
+)
+"""The studies by name."""
 
 GLOBOIDAL_FORMATS: Final = ("svg", *MESHES, "csv", "report")
 """What ``output.files`` may list."""
@@ -75,10 +84,8 @@ class GloboidalOutput(GriddedOutput):
     GloboidalOutput(files=('stl', 'csv'), wall_points=25)
     """
 
-    study_tables: ClassVar[Mapping[str, str]] = {"accuracy": "accuracy"}
-
-    files: tuple[str, ...] = files_param(GLOBOIDAL_FORMATS)
-    studies: tuple[str, ...] = studies_param(study_tables)
+    files: tuple[str, ...] = files_param(GLOBOIDAL_FORMATS, NAME)
+    studies: tuple[str, ...] = studies_param(STUDIES)
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -126,8 +133,6 @@ class GloboidalCamDesign(Design):
     goal: GoalSpec = field(default_factory=GoalSpec)
 
 
-_HERE: Final = "gearcam.kinds.globoidal_cam"
-
 KIND: Final = Kind(
     name=NAME,
     doc="a globoidal indexing cam with its turret",
@@ -150,7 +155,7 @@ KIND: Final = Kind(
         "blank": {"bore_diameter_mm": 20},
         "output": {"files": ["stl", "csv", "report"]},
     },
-    shown={"goal": {"minimize": "cam.pressure_angle_deg.max", "maximize": "cam.least_rib_mm"}},
+    samples={"goal": {"minimize": "cam.pressure_angle_deg.max", "maximize": "cam.least_rib_mm"}},
     processes={
         "printing": {
             "cam": {"roller_clearance_mm": 0.06, "floor_clearance_mm": 0.5},
@@ -162,10 +167,10 @@ KIND: Final = Kind(
         "turret": "a wheel with a roller for each stop",
     },
     facts=deferred(f"{_HERE}.shown:facts"),
-    files=DeferredMapping(f"{_HERE}.shown:FILES"),
+    files=DeferredMapping(f"{_HERE}.shown:FILES", group_of(NAME, "formats")),
     charts=DeferredMapping(f"{_HERE}.drawn:CHARTS"),
     scene=deferred(f"{_HERE}.drawn:scene"),
-    studies=DeferredMapping(f"{_HERE}.studies:STUDIES"),
-    ladders=DeferredMapping(f"{_HERE}.studies:LADDERS"),
+    studies=STUDIES,
+    ladders=DeferredMapping(f"{_HERE}.shown:LADDERS"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
 )

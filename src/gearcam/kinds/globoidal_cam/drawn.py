@@ -41,14 +41,6 @@ if TYPE_CHECKING:
     from gearcam.spatial.globoidal import GloboidalCam, GloboidalWall
 
 
-def _angle(result: GloboidalCamResult) -> Chart:
-    return motion_chart(result, "turret", "Angle of the turret", "angle")
-
-
-def _of_turret(name: str, result: GloboidalCamResult) -> Chart:
-    return motion_chart(result, name, f"{name.capitalize()} of the turret")
-
-
 def _pressure(result: GloboidalCamResult) -> Chart:
     labels = {"top": "at the tops of the ribs", "mean": "in the middle", "end": "at its end"}
     limit = limit_of(KIND, "pressure-angle", result.design.limits)
@@ -63,12 +55,13 @@ def _spread(result: GloboidalCamResult) -> Chart:
 
 
 CHARTS: Final[Charts] = {
-    "turret": _angle,
+    "turret": partial(motion_chart, name="turret", title="Angle of the turret", called="angle"),
     "pressure_angle": _pressure,
     "spread": _spread,
-    "velocity": partial(_of_turret, "velocity"),
-    "acceleration": partial(_of_turret, "acceleration"),
-    "jerk": partial(_of_turret, "jerk"),
+    **{
+        name: partial(motion_chart, name=name, title=f"{name.capitalize()} of the turret")
+        for name in ("velocity", "acceleration", "jerk")
+    },
 }
 """Charts by name; the report leads with the first three."""
 
@@ -121,7 +114,8 @@ def grooves(cam: GloboidalCam) -> tuple[Feature, ...]:
     half = half_height(cam)
     found = []
     for turn in sorted(upper.keys() & lower.keys()):
-        low, high = (_clipped(one[turn], half) for one in (lower, upper))
+        edges = (one[turn] for one in (lower, upper))
+        low, high = (line.real + 1j * np.clip(line.imag, -half, half) for line in edges)
         if (high.imag > low.imag).any():
             found.append(filled(GROOVE, np.concatenate([low, high[::-1]])))
     return tuple(found)
@@ -172,10 +166,6 @@ def _windings(cam: GloboidalCam, wall: GloboidalWall) -> Iterator[tuple[int, Pla
         along = np.concatenate([[low], azimuth[within], [low + TURN]]) - low
         up = np.concatenate([ends[:1], height[within], ends[1:]])
         yield turn, across(cam) * along + 1j * up
-
-
-def _clipped(line: Plane, half: float) -> Plane:
-    return line.real + 1j * np.clip(line.imag, -half, half)
 
 
 _EYE: Final = (0.45, -1.0, 0.55)

@@ -12,10 +12,11 @@ from numpy.typing import ArrayLike
 from gearcam.base.findings import Finding
 from gearcam.designs.outputs import MESHES
 from gearcam.kinds.globoidal_cam.design import GloboidalCamDesign
-from gearcam.kinds.gridded import ROUND, SAGITTA, STEM, GriddedCam, mesh_from
+from gearcam.kinds.gridded import ROUND, SAGITTA, STEM, GriddedCam
 from gearcam.laws.indexing import IndexProgram, index_program
 from gearcam.numeric.columns import Columns
-from gearcam.parts.solids import Mesh, carved, ribbed
+from gearcam.numeric.mesh import Mesh
+from gearcam.parts.solids import carved, ribbed
 from gearcam.spatial.globoidal import GloboidalCam
 from gearcam.spatial.globoidal_carving import roller_corners, scallop, uncut_surface
 from gearcam.spatial.globoidal_make import make_globoidal
@@ -128,12 +129,12 @@ class GloboidalCamResult(GriddedCam):
         cam, bore, around = self.cam, self.design.blank.bore, steps
         if self.carved:
             around = ROUND * steps
-            uncut = mesh_from(uncut_surface(cam, around))
+            uncut = uncut_surface(cam, around)
             rib = carved(uncut, roller_corners(cam, steps, places))
         else:
-            rib = mesh_from(rib_surface(cam, steps, places))
+            rib = rib_surface(cam, steps, places)
         core, blank = core_surface(cam, around), blank_surface(cam, bore, around)
-        return ribbed(mesh_from(core), rib, mesh_from(blank))
+        return ribbed(core, rib, blank)
 
     @cached_property
     def chord_error(self) -> float:
@@ -154,5 +155,5 @@ class GloboidalCamResult(GriddedCam):
         coarser = chords and self.solid_steps > _SHOWN
         return {
             STEM: self.mesh_of(_SHOWN, places) if coarser else self.mesh,
-            TURRET: mesh_from(turret_surface(self.cam, turret.hub, around)),
+            TURRET: turret_surface(self.cam, turret.hub, around),
         }

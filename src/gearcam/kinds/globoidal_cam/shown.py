@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.base.facts import Fact, Facts
+from gearcam.base.facts import Fact, Facts, Tree
 from gearcam.base.findings import limit_of
 from gearcam.kinds.gridded_shown import (
     SOLIDS,
@@ -23,20 +24,20 @@ from gearcam.kinds.gridded_shown import (
 )
 from gearcam.laws.phases_of_lift import TURN
 from gearcam.report.file import report_files
+from gearcam.results.ladders import Ladders, grid_ladder
 from gearcam.spatial.globoidal_checks import KIND
 from gearcam.spatial.globoidal_surface import outer_radius
 
 if TYPE_CHECKING:
     from gearcam.kinds.globoidal_cam.result import GloboidalCamResult
-
-Tree = dict[str, Any]
+    from gearcam.results.kind import Files
 
 
 def facts(result: GloboidalCamResult) -> Facts:
     """Return the facts of a globoidal cam, its `result`."""
     tree: Tree = {
         "indexer": _indexer(result),
-        "motion": _motion(result),
+        "motion": {"unit": "deg"} | peak_facts(result, math.degrees(1.0), "deg", " of the turret"),
         "cam": _cam(result),
         "solid": solid_facts(result),
         "accuracy": accuracy_facts(result, "rollers that cut it", {}),
@@ -58,11 +59,6 @@ def _indexer(result: GloboidalCamResult) -> Tree:
             math.degrees(cam.clearance / cam.reach), "backlash of the turret at rest"
         ),
     }
-
-
-def _motion(result: GloboidalCamResult) -> Tree:
-    """Return the peaks of the turret's derivatives that are finite, by cam angle and by time."""
-    return {"unit": "deg"} | peak_facts(result, math.degrees(1.0), "deg", " of the turret")
 
 
 def _cam(result: GloboidalCamResult) -> Tree:
@@ -95,9 +91,6 @@ def _pressure(result: GloboidalCamResult) -> Fact:
     limit = math.degrees(limit_of(KIND, "pressure-angle", result.design.limits))
     angle = math.degrees(spot.value)
     return Fact(angle, "largest pressure angle", at_most=limit, place=spot.place, shown=True)
-
-
-Files = dict[str, bytes]
 
 
 def _tables(result: GloboidalCamResult, _: Any) -> Files:
@@ -143,3 +136,7 @@ FILES: Final[Mapping[str, Callable[..., Files]]] = {
     "report": report_files,
 }
 """What makes the files of each format: contents by name."""
+
+
+LADDERS: Final[Ladders] = {"solid": partial(grid_ladder, least=72, finer=False)}
+"""What `gearcam accuracy` can measure: the solid, from 72 cam angles on."""

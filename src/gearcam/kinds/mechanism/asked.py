@@ -310,11 +310,11 @@ def second_center(result: Any, limit: float) -> Iterator[Remark]:  # noqa: ARG00
 
     Looks at: the dead centres of the output with the same value.
     """
-    for number, (one, found) in enumerate(
+    for number, (asked, interval) in enumerate(
         zip(result.design.interval, result.intervals, strict=True)
     ):
-        measures = result.measures_of(result.output_of(one))
-        outer = one.before == "outer"
+        measures = result.measures_of(result.output_of(asked))
+        outer = asked.before == "outer"
         top = (measures.largest() if outer else measures.least()).value
         same = [
             center.place
@@ -324,7 +324,7 @@ def second_center(result: Any, limit: float) -> Iterator[Remark]:  # noqa: ARG00
         if len(same) > 1:
             places = ", ".join(f"{formatted(DEG * place, 6)} deg" for place in same)
             yield Remark(
-                f"{one.on} reaches this dead centre more than once in a cycle, at {places}: the "
+                f"{asked.on} reaches this dead centre more than once in a cycle, at {places}: the "
                 "interval is before the first of them.",
-                f"interval[{number}], to {formatted(DEG * found.end, 6)} deg",
+                f"interval[{number}], to {formatted(DEG * interval.end, 6)} deg",
             )

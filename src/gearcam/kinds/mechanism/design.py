@@ -10,8 +10,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar, Final
+from typing import TYPE_CHECKING, Any, Final
 
+from gearcam.base.brought import group_of
 from gearcam.base.display import ShortRepr
 from gearcam.base.quantities import ANGLE, COUNT, LENGTH, TEXT, fixed, param
 from gearcam.base.registry import DeferredMapping, deferred
@@ -22,13 +23,32 @@ from gearcam.kinds.mechanism import drives, names, parts
 from gearcam.kinds.mechanism.asked import TABLES, DwellSpec, IntervalSpec, StretchSpec
 from gearcam.kinds.mechanism.drives import CompareSpec, MachineDrive
 from gearcam.kinds.mechanism.keys import NAME
-from gearcam.kinds.shared import AccuracySpec, GoalSpec
+from gearcam.kinds.shared import ACCURACY, AccuracySpec, GoalSpec
 from gearcam.mechanics.mass import GravitySpec
-from gearcam.results.kind import Kind
+from gearcam.results.kind import Kind, Study, studies_of
 
 if TYPE_CHECKING:
     from gearcam.designs.faults import Fault
     from gearcam.designs.kind import Examined
+
+_HERE: Final = "gearcam.kinds.mechanism"
+
+STUDIES: Final = studies_of(
+    NAME,
+    Study(
+        name="torque",
+        key="torque",
+        doc="Compute the driver's moment under loads, masses and springs; "
+        "write DIR/NAME/torque.csv.",
+        done="computed",
+        table="torque",
+        compute=deferred(f"{_HERE}.torque:study_torque"),
+        demand=deferred(f"{_HERE}.torque:demand"),
+        repeats=("loads-unused",),  # it uses them
+    ),
+    ACCURACY,
+)
+"""The studies by name."""
 
 FORMATS: Final = ("csv", "dxf", "svg", "report")
 """What ``output.files`` may list."""
@@ -75,10 +95,8 @@ class MechanismOutput(OutputSpec):
     MechanismOutput(files=('csv', 'svg'), outputs=('slide', 'rod.angle'))
     """
 
-    study_tables: ClassVar[Mapping[str, str]] = {"torque": "torque", "accuracy": "accuracy"}
-
-    files: tuple[str, ...] = files_param(FORMATS)
-    studies: tuple[str, ...] = studies_param(study_tables)
+    files: tuple[str, ...] = files_param(FORMATS, NAME)
+    studies: tuple[str, ...] = studies_param(STUDIES)
     outputs: tuple[str, ...] | None = param(
         TEXT,
         default=None,
@@ -202,9 +220,6 @@ class MechanismDesign(Design):
     goal: GoalSpec = field(default_factory=GoalSpec)
 
 
-_HERE: Final = "gearcam.kinds.mechanism"
-
-
 def _problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     faults = [*drives.problems(found), *names.problems(document, found)]
     faults += names.unasked(document, found)
@@ -239,15 +254,16 @@ KIND: Final = Kind(
         "point": [{"name": "P", "on": "coupler", "at_mm": [49, 34]}],
         "output": {"files": ["csv", "report"]},
     },
-    shown={
+    samples={
         "goal": {"minimize": "outputs.P_x.acceleration_mm_s2", "maximize": "outputs.P_x.stroke_mm"}
     },
     facts=deferred(f"{_HERE}.shown:facts"),
-    files=DeferredMapping(f"{_HERE}.shown:FILES"),
+    files=DeferredMapping(f"{_HERE}.shown:FILES", group_of(NAME, "formats")),
     charts=DeferredMapping(f"{_HERE}.shown:CHARTS"),
     scene=deferred(f"{_HERE}.drawn:scene"),
-    studies=DeferredMapping(f"{_HERE}.torque:STUDIES"),
+    studies=STUDIES,
     ladders=DeferredMapping(f"{_HERE}.drawn:LADDERS"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
+    brought=group_of(NAME, "parts"),
     cut=False,
 )

@@ -299,16 +299,8 @@ def _angles(result: MechanismResult) -> tuple[Array, int]:
     return np.concatenate([first, np.linspace(low, high, _STEPS * turns + 1)]), len(first)
 
 
-def posed(every: tuple[MovingBody, ...], index: int = 0) -> Iterator[Feature]:
-    """Yield the features of bodies in their places, but for paths.
-
-    Parameters
-    ----------
-    every : tuple of MovingBody
-        The bodies.
-    index : int
-        Number of the place.
-    """
+def posed(every: tuple[MovingBody, ...]) -> Iterator[Feature]:
+    """Yield the features of bodies, `every`, in their first places, but for paths."""
     for body in every:
         part = body.name.rpartition(".")[2]
         prefix = f"{part.upper()}_" if part.startswith("gear") else ""
@@ -316,7 +308,7 @@ def posed(every: tuple[MovingBody, ...], index: int = 0) -> Iterator[Feature]:
         if prefix:
             # a ring begins with its inner teeth: its blank would cover them
             shown.sort(key=lambda one: one.kind not in OUTER)
-        yield from place(shown, body.pose[index], prefix)
+        yield from place(shown, body.pose[0], prefix)
 
 
 def _ghosts(every: tuple[MovingBody, ...], count: int) -> Iterator[Feature]:
@@ -350,8 +342,9 @@ def picture(result: MechanismResult) -> tuple[Drawing, tuple[Label, ...]]:
     names = labelled(_names(every), lines, size, size)
     less, angles = _SMALLER * size, _other_angles(every, q[:count], size)
     return Drawing(name="poses", features=features), (
-        *names, *labelled(angles, lines, less, 0.5 * less, names)
-    )  # fmt: skip
+        *names,
+        *labelled(angles, lines, less, 0.5 * less, names),
+    )
 
 
 def legend(result: MechanismResult) -> str:
@@ -369,22 +362,23 @@ def _other_angles(
 
     The first of the angles (n,), rad, is that of the machine itself.
     """
-    moving = [one for one in every if len(pins_of(one)) and one.name != CHAIN_WHEEL and _moves(one)]
+    moving = [
+        one
+        for one in every
+        if len(pins_of(one)) and one.name != CHAIN_WHEEL
+        if np.ptp(one.pose.turn) or np.ptp(np.abs(one.pose.shift - one.pose.shift[0]))
+    ]
     if not moving:
         return []
-    pins, found = pins_of(moving[0]), dict[complex, list[str]]()
+    pins, angles = pins_of(moving[0]), dict[complex, list[str]]()
     end = complex(pins[int(np.abs(pins).argmax())])
     for index in range(1, len(q)):
         if math.isclose(q[index], q[0], abs_tol=1e-9):
             continue
         at = complex(moving[0].pose[index].apply(end))
-        at = next((one for one in found if abs(one - at) < near), at)
-        found.setdefault(at, []).append(f"{formatted(math.degrees(q[index]), 4)}°")
-    return [(", ".join(texts), at) for at, texts in found.items()]
-
-
-def _moves(body: MovingBody) -> bool:
-    return bool(np.ptp(body.pose.turn) or np.ptp(np.abs(body.pose.shift - body.pose.shift[0])))
+        at = next((one for one in angles if abs(one - at) < near), at)
+        angles.setdefault(at, []).append(f"{formatted(math.degrees(q[index]), 4)}°")
+    return [(", ".join(texts), at) for at, texts in angles.items()]
 
 
 def _names(every: tuple[MovingBody, ...]) -> list[tuple[str, complex]]:

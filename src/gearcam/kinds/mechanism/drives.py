@@ -130,7 +130,9 @@ class MachineDrive(WrittenDrive):
     def shafts(self) -> dict[str, Sort]:
         """What it moves, a shaft or a slide, by the words behind the name of the drive."""
         if self.pair is not None:
-            rack = _moves_a_rack(self.pair)
+            from gearcam.laws.ratio.formula import RackLaw
+
+            rack = isinstance(getattr(self.pair, "law", None), RackLaw)
             return {"wheel1": Sort.SHAFT} | ({"rack": Sort.WAY} if rack else {"wheel2": Sort.SHAFT})
         if self.cam is not None:
             follower = getattr(self.cam, "follower", None)
@@ -149,12 +151,6 @@ class MachineDrive(WrittenDrive):
         for word, sort in self.shafts.items():
             for name in self.names_of(word):
                 yield NameUse(name, sort, ("name",))
-
-
-def _moves_a_rack(pair: Design) -> bool:
-    from gearcam.laws.ratio.formula import RackLaw
-
-    return isinstance(getattr(pair, "law", None), RackLaw)
 
 
 def _formula_problems(text: str) -> Iterator[Breach]:

@@ -80,16 +80,16 @@ def _wheels(drives: Sequence[PlacedDrive]) -> Iterator[tuple[Element, str, float
             density = drive.result.design.blank.wheel(number + 1).density
             if density is None:
                 continue
-            found = mass_properties(drive.result.parts[number], density)
+            mass = mass_properties(drive.result.parts[number], density)
             name = f"{drive.spec.name}.{word}"
             member, center = name + BODY, f"{name}.center of mass"
             if moved.along:  # any point of it has its way
                 element = PushedSlide(member, name, way_of(name), center)
-                inertia = InertiaForce.of_mass(center, found.mass, member)
+                inertia = InertiaForce.of_mass(center, mass.mass, member)
             else:
-                off = drive.vector(complex(*found.centroid[:2]))
+                off = drive.vector(complex(*mass.centroid[:2]))
                 start = cmath.phase(off)
                 element = Crank(member, name, center_of(name), center, abs(off), start)
                 # about its shaft, which stands still
-                inertia = InertiaForce.of_turn(NamedCoordinate(name), _M2 * found.inertia, name)
-            yield element, center, found.mass, inertia
+                inertia = InertiaForce.of_turn(NamedCoordinate(name), _M2 * mass.inertia, name)
+            yield element, center, mass.mass, inertia

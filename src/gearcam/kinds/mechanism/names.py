@@ -41,7 +41,7 @@ Tables = Mapping[str, Any]
 
 def tables_of(design: Any) -> dict[str, Any]:
     """Return the tables of a mechanism's `design` by title."""
-    return {one.name: getattr(design, one.name) for one in fields(design)}
+    return {one.name: getattr(design, one.name) for one in fields(design)} | design.added
 
 
 def several(tables: Tables) -> Iterator[tuple[str, int, WithNames]]:
@@ -59,8 +59,9 @@ def parts_of(tables: Tables) -> Iterator[tuple[str, int, MachinePart]]:
 
 
 def told_parts(tables: Tables) -> Iterator[tuple[str, int, MachinePart]]:
-    """Yield the parts in the order of the register `PARTS` (see `parts_of`)."""
-    yield from parts_of({title: tables[title] for title in PARTS if title in tables})
+    """Yield the parts in the order of the register `PARTS`, then others (see `parts_of`)."""
+    titles = dict.fromkeys((*PARTS, *tables))
+    yield from parts_of({title: tables[title] for title in titles if title in tables})
 
 
 def standing_places(tables: Tables) -> dict[str, complex]:
@@ -126,10 +127,13 @@ def _unread(found: Examined) -> bool:
     return not alone <= {"kind", "name"}
 
 
-@cache
 def _giving(kind: str) -> dict[str, list[NameUse]]:
     """Return the keys with names that tables give, by title."""
-    tables = KINDS[kind].tables.items()
+    return _giving_of(tuple(KINDS[kind].tables.items()))
+
+
+@cache
+def _giving_of(tables: tuple[tuple[str, type], ...]) -> dict[str, list[NameUse]]:
     found = {title: [use for _, use in name_keys(owner, GIVES)] for title, owner in tables}
     return {title: keys for title, keys in found.items() if keys}
 
@@ -171,15 +175,15 @@ def _misspelt(found: Examined, compared: Sequence[NameUse]) -> Iterator[Fault]:
 def _twice(uses: Sequence[NameUse], names: dict[str, NameUse]) -> Iterator[Fault]:
     """Yield names that are given twice, and collect all of them."""
     told = set[tuple[str | int, ...]]()
-    for one in (one for one in uses if one.name):
-        first = names.setdefault(one.name, one)
-        if first is one or one.path in told:
+    for use in (one for one in uses if one.name):
+        first = names.setdefault(use.name, use)
+        if first is use or use.path in told:
             continue
-        told.add(one.path)
-        name = one.name.partition(".")[0]
+        told.add(use.path)
+        name = use.name.partition(".")[0]
         where = f"first by {dotted(first.path)}" if first.path else "first to the frame"
         what = f"the name {show(name)} is given twice, {where}"
-        yield Fault(one.path, what, name, "a name for one thing")
+        yield Fault(use.path, what, name, "a name for one thing")
 
 
 def _suits(one: NameUse, sort: str) -> bool:
@@ -305,19 +309,19 @@ class OutputNames:
     @cached_property
     def whole(self) -> Known:
         """What may be asked for, but for single coordinates."""
-        found: Known = {}
+        outputs: Known = {}
         for part in self.parts:
-            found |= part.outputs()
+            outputs |= part.outputs()
         for joint in self.joints:
-            found.setdefault(joint, coordinates(joint))
+            outputs.setdefault(joint, coordinates(joint))
         for one in (use for part in self.parts for use in part.given() if use.turns):
             name = f"{one.name}.angle"
-            found[name] = (Output(name, one.name, name, True),)
+            outputs[name] = (Output(name, one.name, name, True),)
         for drive in self.tables.get("drive", ()):
             for word, sort in drive.shafts.items():
                 name = f"{drive.name}.{word}"
-                found[name] = (Output(name, name.replace(".", "_"), name, sort == Sort.SHAFT),)
-        return found
+                outputs[name] = (Output(name, name.replace(".", "_"), name, sort == Sort.SHAFT),)
+        return outputs
 
     @cached_property
     def joints(self) -> list[str]:

@@ -249,15 +249,15 @@ class PlacedDrive(ShortRepr):
             Whether the master's angle is its own.
         """
         side = -1.0 if self.spec.mirror else 1.0
-        for word, one in self.moved.items():
+        for word, moved in self.moved.items():
             for name in self.spec.names_of(word):
-                factor = 1.0 if one.along else side
-                yield GivenMotion(name, self._over_master(one.law, factor, master))
-                if one.along:
-                    direction = cmath.phase(self.vector(one.along))
-                    yield GuideLine(way_of(name), self.machine(one.at), direction)
+                factor = 1.0 if moved.along else side
+                yield GivenMotion(name, self._over_master(moved.law, factor, master))
+                if moved.along:
+                    direction = cmath.phase(self.vector(moved.along))
+                    yield GuideLine(way_of(name), self.machine(moved.at), direction)
                 else:
-                    yield MemberPoint(center_of(name), self.machine(one.at))
+                    yield MemberPoint(center_of(name), self.machine(moved.at))
 
     def own(self, q: Array) -> Array:
         """Return its own angles, rad.

@@ -11,10 +11,19 @@ from gearcam.kinds.shared import AccuracySpec, GoalSpec
 from gearcam.mechanics.mass import GravitySpec
 
 __all__ = [
-    "AccuracySpec", "CompareSpec", "DwellSpec", "GoalSpec", "GravitySpec", "IntervalSpec",
-    "MachineDrive", "MechanismDesign", "MechanismOutput", "MechanismResult", "StretchSpec",
+    "AccuracySpec",
+    "CompareSpec",
+    "DwellSpec",
+    "GoalSpec",
+    "GravitySpec",
+    "IntervalSpec",
+    "MachineDrive",
+    "MechanismDesign",
+    "MechanismOutput",
+    "MechanismResult",
+    "StretchSpec",
     "TorqueSpec",
-]  # fmt: skip
+]
 
 PUBLIC = {name: globals()[name] for name in __all__}
 PUBLIC |= {one.__name__: one for one in (*PARTS.values(), *ACTIONS.values())}

@@ -453,9 +453,12 @@ def _of_outputs(name: str, machine: MechanismResult) -> Iterator[Row]:
     for one in machine.outputs:
         measures, (scale, unit) = machine.measures[one.stem], one.unit
         row: Row = {
-            "drive": name, "range_deg": DEG * (high - low), "output": one.stem, "unit": unit,
+            "drive": name,
+            "range_deg": DEG * (high - low),
+            "output": one.stem,
+            "unit": unit,
             "stroke": scale * measures.stroke,
-        }  # fmt: skip
+        }
         if speed is not None:
             row["range_s"] = (high - low) / speed
         for order, word in enumerate(RATES, start=1):
@@ -469,13 +472,18 @@ def _of_outputs(name: str, machine: MechanismResult) -> Iterator[Row]:
 
 def _of_intervals(name: str, machine: MechanismResult) -> Iterator[Row]:
     speed = machine.speed
-    for one, found, rate in zip(
+    for asked, interval, rate in zip(
         machine.design.interval, machine.intervals, machine.interval_velocities, strict=True
     ):
         row = {
-            "drive": name, "on": one.on, "before": one.before, "from_deg": DEG * found.begin,
-            "to_deg": DEG * found.end, "angle_deg": DEG * found.length, "velocity": rate,
-        }  # fmt: skip
-        yield row if speed is None else row | {
-            "time_s": found.length / speed, "velocity_per_s": rate * speed,
-        }  # fmt: skip
+            "drive": name,
+            "on": asked.on,
+            "before": asked.before,
+            "from_deg": DEG * interval.begin,
+            "to_deg": DEG * interval.end,
+            "angle_deg": DEG * interval.length,
+            "velocity": rate,
+        }
+        if speed is not None:
+            row |= {"time_s": interval.length / speed, "velocity_per_s": rate * speed}
+        yield row

@@ -113,11 +113,16 @@ def _path(path: PointPath) -> Tree:
         "area_mm2": None if area is None else area.value,
         "cusps_deg": [DEG * one.place for one in path.cusps] or None,
         "crossings": [
-            {"first_deg": DEG * one.first, "second_deg": DEG * one.second,
-             "x_mm": one.point.real, "y_mm": one.point.imag}
+            {
+                "first_deg": DEG * one.first,
+                "second_deg": DEG * one.second,
+                "x_mm": one.point.real,
+                "y_mm": one.point.imag,
+            }
             for one in path.crossings
-        ] or None,
-    }  # fmt: skip
+        ]
+        or None,
+    }
 
 
 def _where(
@@ -136,21 +141,21 @@ def _dead_centers(measures: TrackMeasures) -> list[float]:
     return sorted(places)
 
 
-def _output(result: MechanismResult, one: Output, number: int) -> Tree:
+def _output(result: MechanismResult, output: Output, number: int) -> Tree:
     """Return range, stroke, dead centres and peaks of an output, of which one stands first."""
-    measures, (scale, unit) = result.measures[one.stem], one.unit
+    measures, (scale, unit) = result.measures[output.stem], output.unit
     least, largest = measures.least(), measures.largest()
     ratio = measures.time_ratio
     tree: Tree = {}
     for word, peak in (("least", least), ("largest", largest)):
         place, at = _where(result, measures, peak)
         value = scale * peak.value if abs(peak.value) > STILL else 0.0
-        tree[f"{word}_{unit}"] = Fact(value, f"{one.stem}, {word}", place=place)
+        tree[f"{word}_{unit}"] = Fact(value, f"{output.stem}, {word}", place=place)
         tree[f"{word}_at_deg"] = at
     return tree | {
         f"stroke_{unit}": Fact(
             scale * measures.stroke,
-            f"{'turn' if measures.rise and one.angle else 'stroke'} of {one.stem}",
+            f"{'turn' if measures.rise and output.angle else 'stroke'} of {output.stem}",
             shown=number < _SHOWN,
             noise=1e-9,
         ),
@@ -158,9 +163,9 @@ def _output(result: MechanismResult, one: Output, number: int) -> Tree:
         "time_ratio": None
         if ratio is None
         else Fact(
-            ratio.ratio, f"forward over return time of {one.stem}", unit="", shown=not number
+            ratio.ratio, f"forward over return time of {output.stem}", unit="", shown=not number
         ),
-        **_peaks(result, one, shown=not number),
+        **_peaks(result, output, shown=not number),
     }
 
 
@@ -202,9 +207,10 @@ def _fitted(path: PointPath, one: StretchSpec, fit: LineFit | CircleFit) -> Tree
     """Return the length of a line, or radius and centre of a circle; distances from a point."""
     from gearcam.linkages.path_fits import LineFit, distances_from
 
-    tree: Tree = {"length_mm": fit.length} if isinstance(fit, LineFit) else {
-        "radius_mm": fit.radius, "center_mm": [fit.center.real, fit.center.imag],
-    }  # fmt: skip
+    if isinstance(fit, LineFit):
+        tree: Tree = {"length_mm": fit.length}
+    else:
+        tree = {"radius_mm": fit.radius, "center_mm": [fit.center.real, fit.center.imag]}
     if one.center is not None:
         ends = distances_from(path, complex(*one.center), one.start, one.end)
         tree["distance_mm"] = extent(*(end.value for end in ends))

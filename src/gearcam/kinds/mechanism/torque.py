@@ -20,22 +20,21 @@ from gearcam.base.quantities import TORQUE as NEWTON_METRES
 from gearcam.base.quantities import Param
 from gearcam.kinds.mechanism.asked import DEG
 from gearcam.kinds.mechanism.loaded import BODY, work_of
-from gearcam.kinds.mechanism.names import acting, tables_of
+from gearcam.kinds.mechanism.names import acting, several, tables_of
 from gearcam.kinds.mechanism.parts import ACTIONS
-from gearcam.kinds.shared import accuracy_study
+from gearcam.kinds.mechanism.parts.action import MachineAction
 from gearcam.linkages.efforts import GRAVITY, PARTS, SPRINGS, InertiaForce
 from gearcam.linkages.measures import Peak
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Limit, Line
-from gearcam.results.kind import Study
-from gearcam.results.result import StudyResult
+from gearcam.results.study import StudyResult
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.placed import PlacedDrive
     from gearcam.kinds.mechanism.result import MechanismResult
     from gearcam.linkages.work import VirtualWork
     from gearcam.numeric.arrays import Array
-    from gearcam.results.result import Progress
+    from gearcam.results.study import Progress
 
 Tree = dict[str, Any]
 
@@ -70,8 +69,13 @@ EVEN: Final = "even_shaft"
 """What a mechanism behind a pair is compared with if the design does not say."""
 
 
-def _demand(design: Any) -> None:
+def demand(design: Any) -> None:
     """Refuse a design on which nothing acts, or in which a speed is missing.
+
+    Parameters
+    ----------
+    design : MechanismDesign
+        The design.
 
     Raises
     ------
@@ -79,13 +83,15 @@ def _demand(design: Any) -> None:
         If it is so.
     """
     tables = tables_of(design)
-    every = [one for title in ACTIONS for one in tables[title]]
+    every = [one for *_, one in several(tables) if isinstance(one, MachineAction)]
     if not every:
         *words, last = (f"[[{title}]]" for title in tables if title in ACTIONS)
         problem = Problem(
-            "nothing acts on the mechanism", file=design.source, key="load",
+            "nothing acts on the mechanism",
+            file=design.source,
+            key="load",
             allowed=f"a table {', '.join(words)} or {last}",
-        )  # fmt: skip
+        )
         raise DesignError([problem])
     reasons = (one.needs_speed(design.gravity) for one in every)
     why = next((one for one in reasons if one), "")
@@ -237,7 +243,7 @@ def study_torque(result: MechanismResult, progress: Progress | None) -> StudyRes
     InfeasibleError
         If the mechanism does not close, or a load is not finite.
     """
-    _demand(result.design)
+    demand(result.design)
     even = None if result.design.compare else result.without_pair
     others = result.compared if even is None else {EVEN: even}
     if progress is not None:
@@ -266,7 +272,7 @@ def study_torque(result: MechanismResult, progress: Progress | None) -> StudyRes
         columns["power_w"] = columns["torque_nm"] * result.speed
     return StudyResult(
         result=result,
-        study=TORQUE,
+        study=result.kind.studies["torque"],
         file="torque.csv",
         table=columns,
         group=_facts(result, work, beside, shafts, ends),
@@ -351,24 +357,24 @@ def _ends(
     result: MechanismResult, work: VirtualWork, shafts: list[ShaftLoad], q: Array
 ) -> dict[str, Ends]:
     """Return the least and the largest of what each shaft exerts, between the rows too."""
-    found = {}
-    for one, side in product(shafts, (-1.0, 1.0)):
-        top = int((side * one.values).argmax())
-        found[one.column, side] = Peak(side * float(one.values[top]), float(q[top]))
+    peaks = {}
+    for load, side in product(shafts, (-1.0, 1.0)):
+        top = int((side * load.values).argmax())
+        peaks[load.column, side] = Peak(side * float(load.values[top]), float(q[top]))
     step = float(q[-1] - q[0]) / result.design.torque.steps
     for _ in range(_ROUNDS):
-        near = np.clip([peak.place + step * _BESIDE for peak in found.values()], q[0], q[-1])
+        near = np.clip([peak.place + step * _BESIDE for peak in peaks.values()], q[0], q[-1])
         again = {one.column: one.values for one in shaft_loads(result, work, near.ravel())}
-        for number, ((column, side), peak) in enumerate(list(found.items())):
+        for number, ((column, side), peak) in enumerate(list(peaks.items())):
             values = side * again[column].reshape(near.shape)[number]
             top = int(values.argmax())
             closer = Peak(float(values[top]), float(near[number, top]))
-            found[column, side] = max(peak, closer, key=lambda one: one.value)
+            peaks[column, side] = max(peak, closer, key=lambda one: one.value)
         step *= 2.0 / (_BESIDE.size - 1)
     return {
         one.column: (
-            found[one.column, -1.0]._replace(value=-found[one.column, -1.0].value),
-            found[one.column, 1.0],
+            peaks[one.column, -1.0]._replace(value=-peaks[one.column, -1.0].value),
+            peaks[one.column, 1.0],
         )
         for one in shafts
     }
@@ -513,18 +519,3 @@ def _charts(
     if len(parts) > 1:
         charts["torque_parts"] = chart("What the driver's moment is made of", parts)
     return charts
-
-
-TORQUE: Final = Study(
-    name="torque",
-    key="torque",
-    doc="Compute the driver's moment under loads, masses and springs; write DIR/NAME/torque.csv.",
-    done="computed",
-    table="torque",
-    compute=study_torque,
-    demand=_demand,
-    repeats=("loads-unused",),  # it uses them
-)
-
-STUDIES: Final[dict[str, Study]] = {one.name: one for one in (TORQUE, accuracy_study())}
-"""The studies by name."""

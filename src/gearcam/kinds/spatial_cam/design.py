@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, ClassVar, Final
+from typing import TYPE_CHECKING, Final
 
+from gearcam.base.brought import group_of
 from gearcam.base.display import ShortRepr
 from gearcam.base.quantities import COUNT, LENGTH, param
 from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.designs.design import Design
 from gearcam.designs.outputs import MESHES, files_param, studies_param
 from gearcam.kinds.cam.public import MOTION, circumstances
-from gearcam.kinds.shared import AccuracySpec, GoalSpec, GriddedOutput
+from gearcam.kinds.shared import ACCURACY, AccuracySpec, GoalSpec, GriddedOutput
 from gearcam.mechanics.drive import DriveSpec
-from gearcam.results.kind import Kind
+from gearcam.results.kind import Kind, Study, studies_of
 from gearcam.spatial.spec import CylinderBlank, CylinderSpec, SpatialFollower
 from gearcam.spatial.tool import MillSpec
 
@@ -23,6 +24,23 @@ if TYPE_CHECKING:
 
 NAME: Final = "spatial-cam"
 """As in a file."""
+
+_HERE: Final = "gearcam.kinds.spatial_cam"
+
+STUDIES: Final = studies_of(
+    NAME,
+    Study(
+        name="developed",
+        key="developed",
+        doc="Compute the error of walls that are constructed in the developed plane; write "
+        "DIR/NAME/developed.csv.",
+        done="compared",
+        table="developed",
+        compute=deferred(f"{_HERE}.studies:study_developed"),
+    ),
+    ACCURACY,
+)
+"""The studies by name."""
 
 SPATIAL_FORMATS: Final = (
     "dxf", "svg", *MESHES, "step", "csv", "report", "tool-path", "gcode",
@@ -41,10 +59,8 @@ class SpatialOutput(GriddedOutput):
     SpatialOutput(files=('stl', 'csv'), wall_points=25)
     """
 
-    study_tables: ClassVar[Mapping[str, str]] = {"developed": "developed", "accuracy": "accuracy"}
-
-    files: tuple[str, ...] = files_param(SPATIAL_FORMATS)
-    studies: tuple[str, ...] = studies_param(study_tables)
+    files: tuple[str, ...] = files_param(SPATIAL_FORMATS, NAME)
+    studies: tuple[str, ...] = studies_param(STUDIES)
     path_tolerance: float = param(
         LENGTH,
         default=0.005,
@@ -127,8 +143,6 @@ class SpatialCamDesign(Design):
             object.__setattr__(self, "motion", tuple(self.motion))
 
 
-_HERE: Final = "gearcam.kinds.spatial_cam"
-
 KIND: Final = Kind(
     name=NAME,
     doc="a cam in space with its roller",
@@ -159,7 +173,7 @@ KIND: Final = Kind(
         "blank": {"bore_diameter_mm": 20},
         "output": {"files": ["stl", "csv", "report"]},
     },
-    shown={
+    samples={
         "goal": {
             "minimize": "cam.pressure_angle_deg.max",
             "maximize": "cam.largest_roller_mm.in_space",
@@ -178,10 +192,10 @@ KIND: Final = Kind(
     },
     notes={"motion": "Phases of the motion, one after the other, 360 deg in all."},
     facts=deferred(f"{_HERE}.shown:facts"),
-    files=DeferredMapping(f"{_HERE}.shown:FILES"),
+    files=DeferredMapping(f"{_HERE}.shown:FILES", group_of(NAME, "formats")),
     charts=DeferredMapping(f"{_HERE}.drawn:CHARTS"),
     scene=deferred(f"{_HERE}.drawn:scene"),
-    studies=DeferredMapping(f"{_HERE}.studies:STUDIES"),
+    studies=STUDIES,
     ladders=DeferredMapping(f"{_HERE}.studies:LADDERS"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
 )

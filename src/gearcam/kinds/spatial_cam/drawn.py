@@ -35,10 +35,6 @@ if TYPE_CHECKING:
     from gearcam.spatial.cam import SpatialWall
 
 
-def _of_lift(name: str, result: SpatialCamResult) -> Chart:
-    return motion_chart(result, name, f"{name.capitalize()} of the follower")
-
-
 def _pressure(result: SpatialCamResult) -> Chart:
     labels = {"inner": "at the roller's inner end", "mean": "in the middle", "outer": "outside"}
     limit = checks.allowed_pressure(result.cam, result.design.limits)
@@ -50,13 +46,16 @@ def _spread(result: SpatialCamResult) -> Chart:
     return spread_chart(result, "Spread of the walls: undercut below 0", places)
 
 
+_MOTION: Final[Charts] = {
+    name: partial(motion_chart, name=name, title=f"{name.capitalize()} of the follower")
+    for name in ("lift", "velocity", "acceleration", "jerk")
+}
+
 CHARTS: Final[Charts] = {
-    "lift": partial(_of_lift, "lift"),
+    "lift": _MOTION["lift"],
     "pressure_angle": _pressure,
     "spread": _spread,
-    "velocity": partial(_of_lift, "velocity"),
-    "acceleration": partial(_of_lift, "acceleration"),
-    "jerk": partial(_of_lift, "jerk"),
+    **_MOTION,
 }
 """Charts by name; the report leads with the first three."""
 

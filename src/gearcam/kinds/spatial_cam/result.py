@@ -16,13 +16,15 @@ from gearcam.base.findings import Finding
 from gearcam.base.numerals import formatted
 from gearcam.designs.outputs import MESHES
 from gearcam.kinds.cam.public import lift_program
-from gearcam.kinds.gridded import ROUND, SAGITTA, STEM, GriddedCam, mesh_from
+from gearcam.kinds.gridded import ROUND, SAGITTA, STEM, GriddedCam
 from gearcam.kinds.shared import solved_file
 from gearcam.kinds.spatial_cam.design import SpatialCamDesign
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
-from gearcam.parts.solids import Mesh, carved
+from gearcam.numeric.mesh import Mesh
+from gearcam.parts.solids import carved
+from gearcam.results.table_rows import TableRows
 from gearcam.spatial.cam import SpatialCam, SpatialWall
 from gearcam.spatial.carving import roller_corners, scallop
 from gearcam.spatial.make import make_cylinder
@@ -35,7 +37,6 @@ from gearcam.spatial.surface import (
 )
 
 if TYPE_CHECKING:
-    from gearcam.laws.columns import Given
     from gearcam.numeric.pose import SpacePose
     from gearcam.parts.bands import BandedBody
     from gearcam.spatial.milling import RotaryPath
@@ -110,7 +111,7 @@ class SpatialCamResult(GriddedCam):
     def cam(self) -> SpatialCam:
         """The cam; its walls and measures are computed on demand."""
         program, design = self.program, self.solved
-        with self.stage("cam"), self.naming_rows():
+        with self.stage("cam"), self.rows.named():
             return make_cylinder(program, design.follower, design.cam, design.blank.bore)
 
     @property
@@ -124,9 +125,9 @@ class SpatialCamResult(GriddedCam):
         return (math.degrees(1.0), "deg") if self.design.follower.oscillating else (1.0, "mm")
 
     @property
-    def given_rows(self) -> list[tuple[str, Given]]:
-        """The rows of tables that should lie on curves (see `Result`)."""
-        return self._given_rows(oscillating=self.design.follower.oscillating)
+    def rows(self) -> TableRows:
+        """The rows of the tables of the design (see `Staged`)."""
+        return TableRows(design=self.design, oscillating=self.design.follower.oscillating)
 
     @cached_property
     def checked(self) -> tuple[Finding, ...]:
@@ -185,8 +186,8 @@ class SpatialCamResult(GriddedCam):
         """Return the cam as a mesh (see `GriddedCam.solid_of`)."""
         cam, blank = self.cam, self.blank
         if not self.carved:
-            return mesh_from(surface(cam, blank, steps, places))
-        whole = mesh_from(blank_surface(cam, blank, ROUND * steps))
+            return surface(cam, blank, steps, places)
+        whole = blank_surface(cam, blank, ROUND * steps)
         return carved(whole, roller_corners(cam, blank, steps, places))
 
     @cached_property
@@ -254,7 +255,7 @@ class SpatialCamResult(GriddedCam):
         from gearcam.parts.shapes import circle_segments
 
         size = 2.0 * self.design.follower.roller_radius
-        roller = mesh_from(roller_surface(self.cam, circle_segments(size, max(chords, SAGITTA))))
+        roller = roller_surface(self.cam, circle_segments(size, max(chords, SAGITTA)))
         return {STEM: self.mesh, **dict.fromkeys(self.rollers, roller)}
 
     @property

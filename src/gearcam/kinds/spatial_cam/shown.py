@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.base.facts import Fact, Facts, extent
+from gearcam.base.facts import Fact, Facts, Tree, extent
 from gearcam.kinds.gridded_shown import (
     SOLIDS,
     accuracy_facts,
@@ -29,14 +29,16 @@ from gearcam.spatial.trimmed import lost_lift
 
 if TYPE_CHECKING:
     from gearcam.kinds.spatial_cam.result import SpatialCamResult
+    from gearcam.results.kind import Files
     from gearcam.spatial.cam import SpatialWall
-
-Tree = dict[str, Any]
 
 
 def facts(result: SpatialCamResult) -> Facts:
     """Return the facts of a cam in space, its `result`."""
-    design = result.design
+    design, of_step = result.design, dict[str, tuple[float, str]]()
+    if result.solid_asked and "step" in design.output.files:
+        how = "distance of exact points from the B-splines, half-way between those interpolated"
+        of_step["step_mm"] = result.bands.error, how
     tree: Tree = {
         "motion": _motion(result),
         "cam": _cam(result),
@@ -50,7 +52,7 @@ def facts(result: SpatialCamResult) -> Facts:
         },
         "solid": solid_facts(result),
         "tool_path": _tool_path(result),
-        "accuracy": _accuracy(result),
+        "accuracy": accuracy_facts(result, "roller that cuts it", of_step),
     }
     headline = ("motion.total_lift", "cam.outer_diameter_mm")
     return Facts(tree, headline, f"{design.cam.form} cam for {design.follower.named}")
@@ -162,16 +164,6 @@ def _tool_path(result: SpatialCamResult) -> Tree | None:
         "chord_mm": Fact(path.chord, "distance of the moves from the path"),
         "cutting_time_s": float(times.sum()),
     }
-
-
-def _accuracy(result: SpatialCamResult) -> Tree | None:
-    how = "distance of exact points from the B-splines, half-way between those interpolated"
-    exact = result.solid_asked and "step" in result.design.output.files
-    more = {"step_mm": (result.bands.error, how)} if exact else {}
-    return accuracy_facts(result, "roller that cuts it", more)
-
-
-Files = dict[str, bytes]
 
 
 def _tables(result: SpatialCamResult, _: Any) -> Files:

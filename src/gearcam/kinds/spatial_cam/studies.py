@@ -10,11 +10,9 @@ import numpy as np
 
 from gearcam.base.facts import Fact
 from gearcam.base.numerals import formatted
-from gearcam.kinds.shared import accuracy_study
 from gearcam.pictures.charts import Chart, Line
-from gearcam.results.kind import Study
 from gearcam.results.ladders import Ladder, Ladders, grid_ladder
-from gearcam.results.result import StudyResult
+from gearcam.results.study import StudyResult
 from gearcam.spatial.developed import developed
 from gearcam.spatial.extremes import Spot
 
@@ -23,8 +21,20 @@ if TYPE_CHECKING:
     from gearcam.spatial.developed import Developed
 
 
-def _compute(result: SpatialCamResult, progress: Any) -> StudyResult:  # noqa: ARG001
-    """Return the errors of the developed plane."""
+def study_developed(result: SpatialCamResult, progress: Any) -> StudyResult:  # noqa: ARG001
+    """Return the errors of the developed plane.
+
+    Parameters
+    ----------
+    result : SpatialCamResult
+        The cam.
+    progress : callable
+        Not told anything: it takes a moment.
+
+    Returns
+    -------
+    StudyResult
+    """
     settings = result.design.developed
     theta = np.linspace(0.0, 2.0 * math.pi, settings.steps, endpoint=False)
     cam = result.cam
@@ -45,7 +55,7 @@ def _compute(result: SpatialCamResult, progress: Any) -> StudyResult:  # noqa: A
             columns.setdefault(name, []).append(values.ravel())
     return StudyResult(
         result=result,
-        study=DEVELOPED,
+        study=result.kind.studies["developed"],
         file="developed.csv",
         table={name: np.concatenate(values) for name, values in columns.items()},
         group=_facts(walls),
@@ -89,20 +99,6 @@ def _charts(walls: Mapping[str, Developed]) -> dict[str, Chart]:
             lines=tuple(lines),
         )
     }
-
-
-DEVELOPED: Final = Study(
-    name="developed",
-    key="developed",
-    doc="Compute the error of walls that are constructed in the developed plane; write "
-    "DIR/NAME/developed.csv.",
-    done="compared",
-    table="developed",
-    compute=_compute,
-)
-
-STUDIES: Final = {one.name: one for one in (DEVELOPED, accuracy_study())}
-"""Studies of cams in space."""
 
 
 _LEAST: Final = 24

@@ -11,9 +11,10 @@ Cycloidal()
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
-from gearcam.base.registry import classes_in, lazy_names
+from gearcam.base.registry import Registry, classes_in, lazy_names
+from gearcam.laws.entry import LawEntry
 
 if TYPE_CHECKING:
     from gearcam.laws.motion.formula import FormulaRise as FormulaRise
@@ -37,9 +38,30 @@ if TYPE_CHECKING:
     from gearcam.laws.motion.simple import TrapezoidalVelocity as TrapezoidalVelocity
 
 
-def _classes() -> dict[str, type]:
-    from gearcam.laws.motion.base import MOTION_LAWS
+MOTION_LAWS: Final[Registry[LawEntry]] = Registry(
+    "rise",
+    "gearcam.laws.motion",
+    {
+        "simple": (
+            "constant-velocity",
+            "constant-acceleration",
+            "harmonic",
+            "cycloidal",
+            "trapezoidal-velocity",
+            "sine-trapezoidal-velocity",
+            "trapezoidal-acceleration",
+        ),
+        "polynomials": ("2-3", "3-4-5", "4-5-6-7", "5-6-7-8-9", "3-4-5-6", "polynomial"),
+        "scca": ("modified-trapezoid", "modified-sine", "scca"),
+        "points": ("b-spline", "table"),
+        "formula": ("formula",),
+    },
+    "motion_laws",
+)
+"""Motion laws by name, and the module of each."""
 
+
+def _classes() -> dict[str, type]:
     return classes_in(MOTION_LAWS)
 
 

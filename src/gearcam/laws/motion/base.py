@@ -1,10 +1,10 @@
-"""Motion laws of rises on the unit square, and their registry.
+"""Motion laws of rises on the unit square.
 
 A rise gives the lift over the whole lift, S, over the cam angle over the whole angle, phi, both
 from 0 to 1; S', S'' and S''' are its velocity, acceleration and jerk. A lift program scales it to
 a phase of the cam and mirrors it for a return. Every rise is a piecewise analytic function with
 exact derivatives, made from its *parameters*, a frozen dataclass with the method
-``build(tolerances)``; ``MOTION_LAWS.register`` adds it to the registry.
+``build(tolerances)``; its module has it among its ``ENTRIES``.
 
 Source: 000 section 3.3.2, eqs. (3.3)-(3.5).
 """
@@ -17,10 +17,8 @@ from dataclasses import dataclass
 from typing import ClassVar, Final, Protocol
 
 from gearcam.base.display import ShortRepr
-from gearcam.base.registry import Registry
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.displacement import EXACT
-from gearcam.laws.entry import LawEntry
 from gearcam.numeric.piecewise import Piecewise
 
 NARROWEST: Final = 1e-4
@@ -69,26 +67,3 @@ class ClosedForm(ShortRepr, ABC):
     def build(self, tolerances: Tolerances) -> MotionFunction:  # noqa: ARG002  (same signature for all)
         """Return the rise."""
         return MotionFunction(function=self.function(), mirrored=self.mirrored)
-
-
-_HOMES: Final = {
-    "simple": (
-        "constant-velocity",
-        "constant-acceleration",
-        "harmonic",
-        "cycloidal",
-        "trapezoidal-velocity",
-        "sine-trapezoidal-velocity",
-        "trapezoidal-acceleration",
-    ),
-    "polynomials": ("2-3", "3-4-5", "4-5-6-7", "5-6-7-8-9", "3-4-5-6", "polynomial"),
-    "scca": ("modified-trapezoid", "modified-sine", "scca"),
-    "points": ("b-spline", "table"),
-    "formula": ("formula",),
-}
-"""The laws of each module, by their names in design files; `laws.motion` names their classes."""
-
-MOTION_LAWS: Final[Registry[LawEntry]] = Registry(
-    "rise", {f"gearcam.laws.motion.{home}": names for home, names in _HOMES.items()}
-)
-"""Motion laws by name."""

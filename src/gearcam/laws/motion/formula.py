@@ -14,7 +14,7 @@ from gearcam.base.rules import Breach
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import TYPED, Axis, LawEntry
 from gearcam.laws.formula import Given, formula_problems, function_of
-from gearcam.laws.motion.base import MOTION_LAWS, MotionFunction
+from gearcam.laws.motion.base import MotionFunction
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import Piece, piecewise
 
@@ -81,12 +81,12 @@ def _from_corner_to_corner(formula: Given, start: float, end: float) -> str:
     return f"this one does: {top}/({end - start:.17g})"
 
 
-MOTION_LAWS.register(
+ENTRIES: Final = (
     LawEntry(
         name="formula",
         example=FormulaRise(formula="x - sin(2*pi*x)/(2*pi)"),
         doc="any smooth formula of S in x",
         continuity="smooth inside; at the ends as the formula is",
         source="Duca, Buium, Paraoaru, section 3.3.2, eqs. (3.3), (3.4)",
-    )
+    ),
 )

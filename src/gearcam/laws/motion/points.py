@@ -16,7 +16,7 @@ from gearcam.base.rules import Breach, exactly_one
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.columns import FromFile, Given, demand
 from gearcam.laws.entry import TYPED, LawEntry
-from gearcam.laws.motion.base import MOTION_LAWS, ClosedForm, MotionFunction
+from gearcam.laws.motion.base import ClosedForm, MotionFunction
 from gearcam.laws.motion.pieces import about, spline
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.least_jerk import chain_slopes, coefficients
@@ -195,7 +195,7 @@ def _errors(
     return tuple(np.max(changes, axis=0).tolist())
 
 
-MOTION_LAWS.register(
+ENTRIES: Final = (
     LawEntry(
         name="b-spline",
         example=BSplineRise(control=(0.0, 0.0, 0.0, 1.0, 1.0, 1.0), degree=5),

@@ -17,7 +17,7 @@ import numpy as np
 from gearcam.base.quantities import NUMBER, Row, param
 from gearcam.base.rules import Breach
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.motion.base import MOTION_LAWS, ClosedForm
+from gearcam.laws.motion.base import ClosedForm
 from gearcam.laws.motion.pieces import about, from_both_ends
 from gearcam.numeric.piecewise import Piecewise, piecewise
 
@@ -136,7 +136,7 @@ class Polynomial3456(_TwoEnded):
     end = (0.0, -6.0, 0.0)
 
 
-MOTION_LAWS.register(
+ENTRIES: Final = (
     LawEntry(
         name="2-3",
         example=Polynomial23(),

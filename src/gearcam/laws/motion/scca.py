@@ -14,12 +14,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Final
 
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import NUMBER, param
 from gearcam.base.rules import Breach
 from gearcam.laws.entry import TYPED, LawEntry
-from gearcam.laws.motion.base import MOTION_LAWS, NARROWEST, ClosedForm
+from gearcam.laws.motion.base import NARROWEST, ClosedForm
 from gearcam.laws.motion.pieces import from_half, lag
 from gearcam.numeric.jets import Jet, sin
 from gearcam.numeric.piecewise import Piecewise
@@ -102,7 +103,7 @@ class ModifiedSine(ClosedForm):
         return scca(0.25, 0.0, 0.75)
 
 
-MOTION_LAWS.register(
+ENTRIES: Final = (
     LawEntry(
         name="scca",
         example=Scca(b=0.2, c=0.5, d=0.3),

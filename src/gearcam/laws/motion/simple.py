@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Final
 
 from gearcam.base.quantities import NUMBER, param
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.motion.base import MOTION_LAWS, NARROWEST, ClosedForm
+from gearcam.laws.motion.base import NARROWEST, ClosedForm
 from gearcam.laws.motion.pieces import from_half, lag, reflected
 from gearcam.numeric.jets import Jet, sin
 from gearcam.numeric.piecewise import Piece, Piecewise, piecewise
@@ -134,7 +135,7 @@ class TrapezoidalAcceleration(ClosedForm):
         return from_half([rising, (flat, constant), (q, falling)])
 
 
-MOTION_LAWS.register(
+ENTRIES: Final = (
     LawEntry(
         name="constant-velocity",
         example=ConstantVelocity(),

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
+
+from gearcam.base.registry import Registry
+from gearcam.laws.entry import LawEntry
 
 if TYPE_CHECKING:
     from gearcam.laws.ratio.centrodes import EccentricCircle as EccentricCircle
@@ -21,3 +24,21 @@ if TYPE_CHECKING:
     from gearcam.laws.ratio.shapes import BSplineLaw as BSplineLaw
     from gearcam.laws.ratio.shapes import RoundedPolygon as RoundedPolygon
     from gearcam.laws.ratio.table import TableLaw as TableLaw
+
+LAWS: Final[Registry[LawEntry]] = Registry(
+    "law",
+    "gearcam.laws.ratio",
+    {
+        "phases": ("phases",),
+        "composite": ("three-phase-polynomial", "multispeed", "fourier"),
+        "constant": ("constant",),
+        "ellipse": ("ellipse",),
+        "centrodes": ("eccentric-circle", "limacon", "lobed", "log-spiral"),
+        "shapes": ("bspline", "rounded-polygon"),
+        "formula": ("formula", "rack"),
+        "table": ("table",),
+        "position": ("motion",),
+    },
+    "ratio_laws",
+)
+"""Ratio laws by name, and the module of each."""

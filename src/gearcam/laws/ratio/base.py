@@ -1,9 +1,9 @@
-"""Ratio laws and their registry.
+"""Ratio laws: what they give, and how they are made.
 
 A law gives ``i21 = dphi2/dphi1 > 0`` and its integral ``phi2`` over one *period* of the driver:
 the driver has `n1` equal lobes, the driven wheel `n2`, so that one period turns the driver by
 ``2*pi/n1`` and the driven wheel by ``2*pi/n2``. A law is made from its *parameters*, a frozen
-dataclass with the method ``build(lobes, tolerances)``; ``LAWS.register`` adds it to the registry.
+dataclass with the method ``build(lobes, tolerances)``; its module has it among its ``ENTRIES``.
 """
 
 from __future__ import annotations
@@ -21,10 +21,8 @@ from gearcam.base.display import ShortRepr
 from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import params_of
-from gearcam.base.registry import Registry
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.displacement import Displacement, Jump
-from gearcam.laws.entry import LawEntry
 from gearcam.laws.ratio.span import (
     NO_DWELL,
     RING,
@@ -185,25 +183,6 @@ class RatioLaw(ShortRepr, Displacement):
         solved = abs(self.closure_error) if self.solved else 0.0
         rounding = 4.0 * float(np.finfo(float).eps) * self.advance
         return measured + solved + self.function_error + rounding
-
-
-_HOMES: Final = {
-    "phases": ("phases",),
-    "composite": ("three-phase-polynomial", "multispeed", "fourier"),
-    "constant": ("constant",),
-    "ellipse": ("ellipse",),
-    "centrodes": ("eccentric-circle", "limacon", "lobed", "log-spiral"),
-    "shapes": ("bspline", "rounded-polygon"),
-    "formula": ("formula", "rack"),
-    "table": ("table",),
-    "position": ("motion",),
-}
-"""The laws of each module, by their names in design files; `laws.ratio` names their classes."""
-
-LAWS: Final[Registry[LawEntry]] = Registry(
-    "law", {f"gearcam.laws.ratio.{home}": names for home, names in _HOMES.items()}
-)
-"""Ratio laws by name."""
 
 
 def milder(parameters: Any, mean: float) -> Iterator[Adjustment]:

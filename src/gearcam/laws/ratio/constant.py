@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
+from gearcam.laws.ratio.base import RatioLaw, make_law
 from gearcam.laws.ratio.span import Lobes
 from gearcam.numeric.piecewise import Piece
 
@@ -22,12 +23,12 @@ class Constant:
         return make_law(lobes, [0.0, lobes.period], [piece], tolerances)
 
 
-LAWS.register(
+ENTRIES: Final = (
     LawEntry(
         name="constant",
         example=Constant(),
         doc="constant ratio z1/z2: circular wheels",
         continuity="analytic",
         source="by definition",
-    )
+    ),
 )

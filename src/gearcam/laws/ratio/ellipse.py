@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Final
 
 from gearcam.base.quantities import COUNT, NUMBER, param
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
+from gearcam.laws.ratio.base import RatioLaw, make_law
 from gearcam.laws.ratio.span import LOBES, Lobes, demand_lobes
 from gearcam.numeric.jets import Jet, atan, cos, sin
 from gearcam.numeric.piecewise import Piece
@@ -59,12 +60,12 @@ class Ellipse:
         return make_law(lobes, [0.0, lobes.period], [piece], tolerances, solved)
 
 
-LAWS.register(
+ENTRIES: Final = (
     LawEntry(
         name="ellipse",
         example=Ellipse(eccentricity=0.5),
         doc="ellipses about a focus, or wheels of more lobes; phi1 = 0 at the nearest point",
         continuity="analytic",
         source="Litvin, Fuentes, chapter 12; centre distance in closed form",
-    )
+    ),
 )

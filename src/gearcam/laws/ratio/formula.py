@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 
@@ -23,7 +24,7 @@ from gearcam.laws.formula import (
     function_of,
     values_of,
 )
-from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
+from gearcam.laws.ratio.base import RatioLaw, make_law
 from gearcam.laws.ratio.driver import demand_positive, law_of_centrode
 from gearcam.laws.ratio.span import (
     NO_DWELL,
@@ -79,8 +80,7 @@ class Formula(ShortRepr):
     def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""
         for name in _NAMES:
-            if getattr(self, name) is not None:
-                yield from formula_problems(name, getattr(self, name))
+            yield from formula_problems(name, getattr(self, name))
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.
@@ -216,8 +216,7 @@ class RackLaw(ShortRepr):
     def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""
         for name in ("r1", "travel"):
-            if getattr(self, name) is not None:
-                yield from formula_problems(name, getattr(self, name))
+            yield from formula_problems(name, getattr(self, name))
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law to `tolerances`; the rack may have any number of teeth.
@@ -246,7 +245,7 @@ class RackLaw(ShortRepr):
         return replace(law, function_errors=function.errors)
 
 
-LAWS.register(
+ENTRIES: Final = (
     LawEntry(
         name="formula",
         example=Formula(phi2="phi1 - 0.08*sin(2*phi1)"),

@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -31,29 +31,29 @@ from gearcam.base.quantities import (
 from gearcam.base.rules import Breach
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
+from gearcam.laws.ratio.base import RatioLaw, make_law
 from gearcam.laws.ratio.span import NO_DWELL, SAME, Lobes, Span, open_travel, own_travel, span_of
 from gearcam.numeric.jets import Jet, Value, cos, polynomial, primitive, sin
 from gearcam.numeric.piecewise import Piece
 
-Curve = Callable[[Jet, Value, Value, Value, Value], Jet]
-"""A function of phi1, with the ratios at both ends, the angle at the start and the width."""
+Shape = Callable[[Jet], Jet]
+"""A function on the unit interval."""
 
 
 @dataclass(frozen=True)
 class Arc(ShortRepr):
-    """A shape of arcs.
+    """Arcs of one shape, which rises from 0 to 1 over the unit interval.
 
     Parameters
     ----------
-    ratio, integral : callable
-        The ratio, and its integral with any constant.
+    shape, integral : callable
+        The shape, and its integral with any constant.
     share : float
-        Weight of the end value in the mean of the arc.
+        Mean of the shape: weight of the end value in the mean of an arc.
     """
 
-    ratio: Curve
-    integral: Curve
+    shape: Shape
+    integral: Shape
     share: float = 0.5
 
     def piece(self, start: float, end: float, low: float, width: float) -> Piece:
@@ -70,49 +70,36 @@ class Arc(ShortRepr):
         -------
         Piece
         """
-        return Piece(self.ratio, self.integral, (start, end, low, width))
+        return Piece(self._ratio, self._driven, (start, end, low, width))
 
+    def _ratio(self, x: Jet, start: Value, end: Value, low: Value, width: Value) -> Jet:
+        return (end - start) * self.shape((x - low) / width) + start
 
-def _cosine(x: Jet, start: Value, end: Value, low: Value, width: Value) -> Jet:
-    """003 eqs. (2.1), (2.17) with Tables 2.2, 2.4."""
-    return 0.5 * (start - end) * cos(math.pi / width * (x - low)) + 0.5 * (start + end)
-
-
-def _cosine_integral(x: Jet, start: Value, end: Value, low: Value, width: Value) -> Jet:
-    half, speed = 0.5 * (start - end), math.pi / width
-    return 0.5 * (start + end) * x + (half / speed) * sin(speed * (x - low))
-
-
-def _sine(x: Jet, start: Value, end: Value, low: Value, width: Value) -> Jet:
-    """Return a quarter of a sine, 003 eqs. (3.1), (3.10), (3.11), with a slope at the start."""
-    return (end - start) * sin(0.5 * math.pi / width * (x - low)) + start
-
-
-def _sine_integral(x: Jet, start: Value, end: Value, low: Value, width: Value) -> Jet:
-    speed = 0.5 * math.pi / width
-    return start * x - ((end - start) / speed) * cos(speed * (x - low))
-
-
-def _rising(*powers: float) -> Arc:
-    """Return arcs shaped as a polynomial that rises from 0 to 1 over the unit interval."""
-
-    def ratio(x: Jet, start: Value, end: Value, low: Value, width: Value) -> Jet:
-        return (end - start) * polynomial((x - low) / width, 0.0, *powers) + start
-
-    def integral(x: Jet, start: Value, end: Value, low: Value, width: Value) -> Jet:
+    def _driven(self, x: Jet, start: Value, end: Value, low: Value, width: Value) -> Jet:
         t = (x - low) / width
-        return width * (start * t + (end - start) * primitive(t, 0.0, *powers))
+        return width * (start * t + (end - start) * self.integral(t))
 
-    return Arc(ratio, integral)
+
+def _polynomial_arc(*powers: float) -> Arc:
+    return Arc(lambda t: polynomial(t, 0.0, *powers), lambda t: primitive(t, 0.0, *powers))
 
 
 ARCS: Final[dict[str, Arc]] = {
-    "cosine": Arc(_cosine, _cosine_integral),
+    # 003 eqs. (2.1), (2.17) with Tables 2.2, 2.4
+    "cosine": Arc(
+        lambda t: 0.5 - 0.5 * cos(math.pi * t),
+        lambda t: 0.5 * t - (0.5 / math.pi) * sin(math.pi * t),
+    ),
     # 003 eq. (2.13) with Table 2.3, written on the unit interval
-    "cubic": _rising(0.0, 0.0, 3.0, -2.0),
+    "cubic": _polynomial_arc(0.0, 0.0, 3.0, -2.0),
     # also the second derivative of the ratio is zero at both ends
-    "quintic": _rising(0.0, 0.0, 0.0, 10.0, -15.0, 6.0),
-    "sine": Arc(_sine, _sine_integral, share=2.0 / math.pi),
+    "quintic": _polynomial_arc(0.0, 0.0, 0.0, 10.0, -15.0, 6.0),
+    # a quarter of it, 003 eqs. (3.1), (3.10), (3.11), with a slope at the start
+    "sine": Arc(
+        lambda t: sin(0.5 * math.pi * t),
+        lambda t: (-2.0 / math.pi) * cos(0.5 * math.pi * t),
+        share=2.0 / math.pi,
+    ),
 }
 """Shapes by their names in design files."""
 
@@ -155,32 +142,24 @@ class Phases(ShortRepr):
             yield "ratios", None, message, "one ratio for each knot"
             return
         yield from knot_problems(self.knots)
-        open_places: list[tuple[str, int | None]] = [
-            ("knots", k) for k, value in enumerate(self.knots) if value == "solve"
-        ]
-        open_places += [("ratios", k) for k, value in enumerate(self.ratios) if value == "solve"]
         if self.driven_travel is None:
             yield from self._closed_problems()
             return
-        open_places += [("driven_travel", None)] if self.driven_travel == "solve" else []
-        if len(open_places) > 1:
+        for place in solved_places(self, "knots", "ratios", "driven_travel")[1:2]:
             rule = 'one "solve" among knots, ratios and driven_travel_deg'
-            yield (*open_places[1], 'more than one "solve"', rule)
+            yield (*place, 'more than one "solve"', rule)
 
     def _closed_problems(self) -> Iterator[Breach]:
-        for index, value in enumerate(self.knots):
-            if value == "solve":
-                rule = (
-                    "an angle (a knot can be solved only for an open pair, with driven_travel_deg)"
-                )
-                yield "knots", index, "a knot of a closed pair cannot be solved", rule
+        rule = "an angle (a knot can be solved only for an open pair, with driven_travel_deg)"
+        for place in solved_places(self, "knots"):
+            yield (*place, "a knot of a closed pair cannot be solved", rule)
         first, last = self.ratios[0], self.ratios[-1]
         if first != last:
             given = last if first == "solve" else first
             message = "the last ratio differs from the first"
             yield "ratios", len(self.ratios) - 1, message, f"{given!r}"
-        if sum(value == "solve" for value in self.ratios[:-1]) > 1:
-            second = [k for k, value in enumerate(self.ratios) if value == "solve"][1]
+        solved = [k for k, value in enumerate(self.ratios[:-1]) if value == "solve"]
+        for second in solved[1:2]:
             message = 'more than one "solve"'
             yield "ratios", second, message, 'one "solve"; the knots of one lobe are enough'
 
@@ -205,6 +184,16 @@ class Phases(ShortRepr):
             knots = np.array(self.knots, dtype=float)
             span = open_span(arc, knots, self.ratios, lobes, travel, tolerances)
         return arcs_law(arc, knots, self.ratios, span, tolerances, solved)
+
+
+def solved_places(parameters: Any, *names: str) -> list[tuple[str, int | None]]:
+    """Return the fields `names` of a law's parameters, and places in them, that are "solve"."""
+    found: list[tuple[str, int | None]] = []
+    for name in names:
+        value = getattr(parameters, name)
+        row = enumerate(value) if isinstance(value, tuple) else [(None, value)]
+        found += [(name, place) for place, one in row if one == "solve"]
+    return found
 
 
 def open_span(
@@ -451,12 +440,12 @@ def _solve_knot(
     return filled(place), {f"knots_deg[{index}]": math.degrees(place)}
 
 
-LAWS.register(
+ENTRIES: Final = (
     LawEntry(
         name="phases",
         example=Phases(knots=(0.0, math.radians(160), 2 * math.pi), ratios=(1.6, 0.4, 1.6)),
         doc="ratios at knots, joined by arcs with zero slope at each knot; closed or open",
         continuity="C1 at the knots; C2 for quintic arcs",
         source="Niculescu, sections 2.2.2.1 to 2.2.2.3 and 3.2.2",
-    )
+    ),
 )

@@ -15,9 +15,9 @@ from gearcam.base.numerals import formatted
 from gearcam.base.quantities import NUMBER, TEXT, param
 from gearcam.base.rules import Breach, exactly_one, excludes, needs
 from gearcam.base.tolerances import Tolerances
-from gearcam.laws.entry import VARIABLE, Axis, LawEntry
+from gearcam.laws.entry import Axis, LawEntry
 from gearcam.laws.formula import Given, formula_problems, function_of, values_of
-from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
+from gearcam.laws.ratio.base import RatioLaw, make_law
 from gearcam.laws.ratio.formula import axis_of, from_phi2
 from gearcam.laws.ratio.slider import NARROWEST, crank_angle, make_slide
 from gearcam.laws.ratio.span import OPEN, Lobes, Span, open_travel, span_of
@@ -65,9 +65,8 @@ class MotionLaw(ShortRepr):
 
     def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""
-        for name, variable in (("y", "x"), ("slide", VARIABLE)):
-            if getattr(self, name) is not None:
-                yield from formula_problems(name, getattr(self, name), variable)
+        yield from formula_problems("y", self.y, "x")
+        yield from formula_problems("slide", self.slide)
         if self.x_from is not None and self.x_from == self.x_to:
             yield "x_to", None, "is x_from", "another x"
 
@@ -132,7 +131,7 @@ class MotionLaw(ShortRepr):
         return replace(law, function_errors=errors)
 
 
-LAWS.register(
+ENTRIES: Final = (
     LawEntry(
         name="motion",
         example=MotionLaw(
@@ -141,5 +140,5 @@ LAWS.register(
         doc="position y(x) of the driven element, or of a slide that the driven crank moves",
         continuity="analytic if the formula is",
         source="Niculescu, Table 1.1, second hypothesis; section 1.4.1",
-    )
+    ),
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from gearcam.base.errors import beyond_limit
 from gearcam.base.quantities import COUNT, NUMBER, Row, param
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
+from gearcam.laws.ratio.base import RatioLaw, make_law
 from gearcam.laws.ratio.driver import law_of_centrode
 from gearcam.laws.ratio.span import WHEEL, Lobes
 from gearcam.numeric.chebyshev import NotSmoothError, expand
@@ -141,7 +142,7 @@ class RoundedPolygon(ShortRepr):
         return float(bracketed_root(excess, low, high, 1e-16))
 
 
-LAWS.register(
+ENTRIES: Final = (
     LawEntry(
         name="bspline",
         example=BSplineLaw(radii=(2.0, 2.0, 2.0, 2.0)),

@@ -26,7 +26,7 @@ from gearcam.laws.columns import (
     spans,
 )
 from gearcam.laws.entry import TYPED, LawEntry
-from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
+from gearcam.laws.ratio.base import RatioLaw, make_law
 from gearcam.laws.ratio.driver import demand_radii, law_of_centrode
 from gearcam.laws.ratio.span import (
     NO_DWELL,
@@ -239,12 +239,12 @@ def _pieces(
     return [Piece(function, integral, tuple(row)) for row in rows]
 
 
-LAWS.register(
+ENTRIES: Final = (
     LawEntry(
         name="table",
         example=TableLaw(phi1=tuple(math.pi * k / 4 for k in range(9)), ratio=(3.0,) * 9),
         doc="points of the ratio, the driven angle or the driver's radius, as lists or a CSV file",
         continuity="C2 in the given values; the ratio is C1 if phi2 is given",
         source="quintics that keep the shape of the points",
-    )
+    ),
 )

@@ -21,10 +21,8 @@ from gearcam.designs.kind import KINDS
 from gearcam.designs.template import template
 from gearcam.designs.validate import faults_of
 from gearcam.kinds.cam.design import CamDesign, CamOutputSpec
-from gearcam.kinds.cam.studies import FORCES
 from gearcam.kinds.cam.tables import CamBlank
-from gearcam.kinds.gear_pair.studies import MESH
-from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.laws.motion import MOTION_LAWS
 from gearcam.laws.phases_of_lift import (
     PHASES,
     DwellPhase,
@@ -196,10 +194,10 @@ def test_a_design_made_in_python_meets_the_same_rules() -> None:
     assert isinstance(design.blank, CamBlank)
     assert not design.blank.timing_marks
     with pytest.raises(DesignError, match='for designs of kind = "gear-pair"'):
-        studied(MESH, design, {"steps": 3})
+        studied(KINDS["gear-pair"].studies["mesh"], design, {"steps": 3})
     drum = load(rules.ROOT / "profiles" / "cylinder_cam.toml")
     with pytest.raises(DesignError, match=r'not for kind = "cam" with cam\.form = "cylinder"'):
-        studied(FORCES, drum, {})
+        studied(KINDS["cam"].studies["forces"], drum, {})
 
 
 @pytest.mark.parametrize("kind", list(KINDS))

@@ -185,7 +185,7 @@ def test_files() -> None:
 
 def test_the_follower_goes_on_beyond_both_rollers() -> None:
     result = gearcam.build(read(SLIDING))
-    shapes = [one.shape for one in result.form.picture().features if one.layer == "FOLLOWER"]
+    shapes = [one.shape for one in result.drawing.features if one.layer == "FOLLOWER"]
     up, down = (shape.points.imag for shape in shapes if isinstance(shape, Path))
     assert up[1] > up[0] > 0.0 > down[0] > down[1]
 

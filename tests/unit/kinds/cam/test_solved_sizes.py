@@ -17,7 +17,7 @@ from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.cli import main
 from gearcam.designs.writing import toml_text
 from gearcam.kinds.cam.solve import Task, solved
-from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.laws.motion import MOTION_LAWS
 from helpers_built import built
 from helpers_sampling import chosen, few
 from random_designs.cam import motion_by_phases, motion_of_turn

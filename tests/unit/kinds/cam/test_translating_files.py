@@ -78,7 +78,7 @@ def test_a_profile_is_followed() -> None:
 
 def test_the_kerf_of_a_groove_that_goes_through() -> None:
     result = built(PLATE, (DEEP, ""), ("[output]", "[output]\nkerf_mm = 0.4"))
-    (drawing,) = result.form.drawings()
+    (drawing,) = result.plates
     paths = {one.layer: one.shape for one in cut_drawing(drawing, 0.4).features}
     cam = sliding_of(result)
     assert cam.groove is not None
@@ -159,6 +159,6 @@ def test_the_picture_stands_where_it_is_asked() -> None:
     with pytest.raises(InfeasibleError, match="beyond the travel of the cam") as caught:
         built(PLATE, ("travel_mm = 80", "travel_mm = 171")).files("svg")
     assert caught.value.limit == pytest.approx(170.0)
-    drawing = result.form.picture()
+    drawing = result.drawing
     x = reach(drawing.features[0].shape).real
     assert (x.min(), x.max()) == pytest.approx((80.0 - 182.05, 80.0 + 12.05))

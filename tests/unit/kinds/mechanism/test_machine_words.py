@@ -377,7 +377,7 @@ def test_a_few_facts_are_always_shown() -> None:
 
 def test_the_study_of_loads_does_not_repeat_that_it_is_to_be_asked_for() -> None:
     result = built(output("P", load=[{"on": "P", "force_n": [1, 2]}]))
-    codes = {one.code for one in result.findings_with([result.study("torque")])}
+    codes = {one.code for one in result.study("torque").findings}
     assert "loads-unused" in {one.code for one in result.findings} - codes
 
 

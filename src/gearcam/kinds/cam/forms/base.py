@@ -1,9 +1,9 @@
 """Forms of cams: the classes of their tables, and what is special to their cams.
 
-A *form* is a class in `FORMS`, loaded when a design names it; an instance looks at a result. It
-defines only what is special to it; all other code uses the walls, motions and parts of the cam that
-it has made, in their order, and never asks for the name of a form. The disc cam (`disc`) has what
-fits every cam whose walls are the outlines of plates.
+A *form* is a class in `FORMS`, loaded when a design names it; an instance has a design, and takes
+the cam that it has made and its parts. It defines only what is special to it; all other code uses
+the walls, motions and parts of the cam, in their order, and never asks for the name of a form. The
+disc cam (`disc`) has what fits every cam whose walls are the outlines of plates.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar, Final, Generic, TypeVar, cast
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Generic, TypeVar
 
 from gearcam.base.facts import Fact
 from gearcam.base.registry import Registry
@@ -29,18 +29,32 @@ from gearcam.mechanics.load import LoadSpec
 
 if TYPE_CHECKING:
     from gearcam.base.tolerances import Tolerances
-    from gearcam.kinds.cam.result import CamResult
     from gearcam.numeric.contour import Contour
     from gearcam.parts.body import Part
     from gearcam.pictures.drawings import Drawing, Path
 
+    Parts = Sequence[Part]
+
 ROWS: Final = (
-    "cam.follower", "cam.roller_radius_mm", "cam.dome_radius_mm", "cam.pivot_distance_mm",
-    "cam.arm_mm", "cam.face_offset_mm", "cam.offset_mm", "motion.total_lift",
-    "cam.prime_radius_mm", "cam.base_radius_mm", "cam.rotation", "cam.pressure_angle_deg.rise_max",
-    "cam.pressure_angle_deg.return_max", "cam.profile.clearance_mm", "part.density_kg_m3",
-    "part.mass.mass_kg", "part.mass.centroid_mm", "part.mass.unbalance_g_mm",
-)  # fmt: skip
+    "cam.follower",
+    "cam.roller_radius_mm",
+    "cam.dome_radius_mm",
+    "cam.pivot_distance_mm",
+    "cam.arm_mm",
+    "cam.face_offset_mm",
+    "cam.offset_mm",
+    "motion.total_lift",
+    "cam.prime_radius_mm",
+    "cam.base_radius_mm",
+    "cam.rotation",
+    "cam.pressure_angle_deg.rise_max",
+    "cam.pressure_angle_deg.return_max",
+    "cam.profile.clearance_mm",
+    "part.density_kg_m3",
+    "part.mass.mass_kg",
+    "part.mass.centroid_mm",
+    "part.mass.unbalance_g_mm",
+)
 """Facts in the tables of all drawings."""
 
 C = TypeVar("C", bound=Cam)
@@ -68,8 +82,8 @@ class Form(ABC, Generic[C, S, F]):
 
     Parameters
     ----------
-    result : CamResult
-        The result of a design of this form.
+    design : CamDesign
+        A design of this form, with all its sizes.
     """
 
     name: ClassVar[str]
@@ -100,37 +114,15 @@ class Form(ABC, Generic[C, S, F]):
     rows: ClassVar[tuple[str, ...]] = ()
     """Facts of its own in the tables of its drawings."""
 
-    def __init__(self, result: CamResult) -> None:
-        self.result = result
-        self.design = result.solved
+    def __init__(self, design: Any) -> None:
+        self.design = design
+        self.given: S = design.cam
+        self.follower: F = design.follower
+        self.blank: Any = design.blank
+        self.output: Any = design.output
 
     def __repr__(self) -> str:
-        return f"{type(self).__name__}({self.result!r})"
-
-    @property
-    def cam(self) -> C:
-        """The cam that it has made."""
-        return cast("C", self.result.cam)
-
-    @property
-    def given(self) -> S:
-        """The sizes of the cam in the design."""
-        return cast("S", self.design.cam)
-
-    @property
-    def follower(self) -> F:
-        """The follower in the design."""
-        return cast("F", self.design.follower)
-
-    @property
-    def blank(self) -> Any:
-        """The blank in the design, of the class in `tables`."""
-        return self.design.blank
-
-    @property
-    def output(self) -> Any:
-        """What the design says of its output, of the class in `tables`."""
-        return self.design.output
+        return f"{type(self).__name__}({self.design!r})"
 
     @property
     def chord_tolerance(self) -> float:
@@ -142,9 +134,8 @@ class Form(ABC, Generic[C, S, F]):
         """Key and value of the step of tables of the motion, rad or mm."""
         return "output.motion_step_deg", self.output.motion_step
 
-    @property
-    def contact_width(self) -> float:
-        """Width of the contact between cam and follower, mm."""
+    def contact_width(self, cam: C) -> float:  # noqa: ARG002
+        """Return the width of the contact between `cam` and follower, mm."""
         return self.given.thickness
 
     @classmethod
@@ -162,33 +153,33 @@ class Form(ABC, Generic[C, S, F]):
         known = table_of("cam", cls.tables["cam"])
         yield from placed_faults(problems, known, document["cam"], ("cam",))
 
-    def program(self) -> Program:
+    def program(self, tolerances: Tolerances) -> Program:
         """Return the lift that the design asks for."""
-        return lift_program(self.design, self.result.tolerances)
+        return lift_program(self.design, tolerances)
 
     @abstractmethod
     def make(self, program: Program) -> C:
         """Return the cam with the lift of a `program`."""
 
     @abstractmethod
-    def parts(self) -> tuple[Part, ...]:
-        """Return what is made, each with all that is ordered."""
+    def parts(self, cam: C) -> tuple[Part, ...]:
+        """Return what is made of a `cam`, each with all that is ordered."""
 
     @abstractmethod
-    def finished(self) -> tuple[Contour, ...]:
-        """Return the walls on the finished parts, in the order of the walls."""
+    def finished(self, cam: C, parts: Parts) -> tuple[Contour, ...]:
+        """Return the walls on the finished `parts` of a `cam`, in the order of its walls."""
 
     @abstractmethod
-    def drawings(self) -> tuple[Drawing, ...]:
-        """Return a drawing of each part in its own frame, for cutting."""
+    def drawings(self, cam: C, parts: Parts) -> tuple[Drawing, ...]:
+        """Return a drawing of each of the `parts` of a `cam` in its own frame, for cutting."""
 
     @abstractmethod
-    def picture(self) -> Drawing:
-        """Return the cam assembled with its follower, at the angle of the design."""
+    def picture(self, cam: C, parts: Parts) -> Drawing:
+        """Return the `parts` of a `cam` assembled with its follower, at the angle of the design."""
 
     @abstractmethod
-    def paths(self, radius: float | None) -> Mapping[str, Contour | Path]:
-        """Return paths of the centre of a cutter of a `radius`, mm, by the stems of their files."""
+    def paths(self, cam: C, parts: Parts) -> Mapping[str, Contour | Path]:
+        """Return paths of a cutter's centre along a `cam` or its `parts`, by the stems of files."""
 
     def rows_of(self, number: int) -> Sequence[str]:  # noqa: ARG002
         """Return the names of the facts in the table of a part's drawing, by its `number`."""
@@ -197,16 +188,16 @@ class Form(ABC, Generic[C, S, F]):
 
     def heights(self) -> tuple[float, ...]:
         """Return the height of each part in the assembly, mm."""
-        return (0.0,) * len(self.result.parts)
+        return (0.0,)
 
     @property
     def leading(self) -> str:
         """The name of the size for the headline, one of its `sizes`."""
         return self.follower.size_keys[0]
 
-    def sizes(self) -> dict[str, Any]:
-        """Return its sizes, as facts."""
-        follower = self.result.follower
+    def sizes(self, cam: C) -> dict[str, Any]:
+        """Return the sizes of a `cam`, as facts."""
+        follower = cam.motions[0].follower
         return {
             **self.follower.placement,
             "rotation": Fact(self.given.rotation, "cam turns"),
@@ -215,19 +206,22 @@ class Form(ABC, Generic[C, S, F]):
         }
 
     @abstractmethod
-    def facts(self) -> dict[str, Any]:
-        """Return the facts of the cam beyond follower, size and pressure angles."""
+    def facts(self, cam: C, made: Sequence[Contour]) -> dict[str, Any]:
+        """Return the facts of a `cam` beyond follower, size and pressure angles.
+
+        Parameters
+        ----------
+        cam : Cam
+            The cam.
+        made : sequence of Contour
+            Its walls as they are made, with clearance.
+        """
 
 
 FORMS: Registry[type[Form[Any, Any, Any]]] = Registry(
     "a form of cams",
-    {
-        "gearcam.kinds.cam.forms.disc": ("disc",),
-        "gearcam.kinds.cam.forms.groove": ("groove",),
-        "gearcam.kinds.cam.forms.conjugate": ("conjugate",),
-        "gearcam.kinds.cam.forms.yoke": ("yoke",),
-        "gearcam.kinds.cam.forms.translating": ("translating",),
-    },
+    "gearcam.kinds.cam.forms",
+    {name: (name,) for name in ("disc", "groove", "conjugate", "yoke", "translating")},
 )
 """The forms by name, each loaded when it is asked for."""
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.facts import Fact
 from gearcam.base.quantities import ANGLE, LENGTH, LONGEST, param, positive_length
@@ -19,19 +19,25 @@ from gearcam.cams.spec import (
     form_param,
 )
 from gearcam.designs.faults import Fault
-from gearcam.kinds.cam.forms.base import FORMS, Form
-from gearcam.kinds.cam.forms.disc import TOOL_PATH, Plates
+from gearcam.kinds.cam.forms.base import Form
+from gearcam.kinds.cam.forms.disc import Plates
+from gearcam.kinds.cam.wall_facts import curvature, pressure, size, start_angle, trimming
 
 if TYPE_CHECKING:
+    from gearcam.kinds.cam.forms.base import Parts
     from gearcam.laws.program import Program
     from gearcam.numeric.contour import Contour
     from gearcam.parts.body import Part
     from gearcam.pictures.drawings import Drawing
 
 _OF_SECOND = (
-    "prime_radius_mm", "base_radius_mm", "roller_radius_mm", "arm_mm",
-    "pressure_angle_deg.rise_max", "pressure_angle_deg.return_max",
-)  # fmt: skip
+    "prime_radius_mm",
+    "base_radius_mm",
+    "roller_radius_mm",
+    "arm_mm",
+    "pressure_angle_deg.rise_max",
+    "pressure_angle_deg.return_max",
+)
 """Facts of the second cam that replace those of the first in the table of its drawing."""
 
 
@@ -171,60 +177,44 @@ class Conjugate(Plates[ConjugateCam, ConjugateSpec, ConjugateFollower]):
             tolerance=self.chord_tolerance,
         )
 
-    def parts(self) -> tuple[Part, ...]:
+    def parts(self, cam: ConjugateCam) -> tuple[Part, ...]:
         """Return both plates in one frame, with hubs on their outer faces only."""
         blanks = [replace(self.blank, **{inner: 0.0}) for inner in ("hub_front", "hub_back")]
         return tuple(
             self.plate(
                 f"cam{wall.key}",
-                profile,
+                wall.contour,
                 blank if blank.hub_front or blank.hub_back else replace(blank, hub_diameter=0.0),
             )
-            for wall, profile, blank in zip(
-                self.cam.walls, self.result.profiles, blanks, strict=True
-            )
+            for wall, blank in zip(cam.walls, blanks, strict=True)
         )
 
     def heights(self) -> tuple[float, ...]:
         """Return 0 and the height of the second plate, which is above the first one and the gap."""
         return 0.0, self.given.thickness + self.given.gap
 
-    @property
-    def primes(self) -> tuple[float, float]:
-        """Prime radii of both cams, mm; the second is that at the highest lift."""
-        return self.cam.first.follower.prime_radius, self.cam.prime2
+    def primes(self, cam: ConjugateCam) -> tuple[float, float]:
+        """Return the prime radii of both cams, mm; the second is that at the highest lift."""
+        return cam.first.follower.prime_radius, cam.prime2
 
-    def picture(self) -> Drawing:
-        """Return both plates, turned, with their follower."""
-        from gearcam.kinds.cam.drawn import follower, plate
+    def picture(self, cam: ConjugateCam, parts: Parts) -> Drawing:
+        """Return both plates, turned, with their follower (see `Form.picture`)."""
+        from gearcam.kinds.cam.drawings import follower, plate
         from gearcam.pictures.drawings import CENTER, FOLLOWER, Drawing
 
-        pose = self.output.pose
+        pose, reach = self.output.pose, max(wall.contour.reach for wall in cam.walls)
         plates, others = [], []
-        for part, wall, prime in zip(self.result.parts, self.cam.walls, self.primes, strict=True):
-            side = -1.0 if wall.clockwise else 1.0
-            shapes = follower(wall, pose, self.reach)
-            for feature in plate(part, wall, prime, shapes, angle=side * pose).features:
+        for part, wall, prime in zip(parts, cam.walls, self.primes(cam), strict=True):
+            shapes = follower(wall, pose, reach)
+            for feature in plate(part, wall, prime, shapes, angle=wall.hand * pose).features:
                 if feature.layer in (CENTER, FOLLOWER):
                     others.append(feature)
                 else:
                     plates.append(replace(feature, layer=f"{part.name.upper()}_{feature.layer}"))
         return Drawing(name="cams", features=(*plates, *others))
 
-    def paths(self, radius: float | None) -> Mapping[str, Contour]:
-        """Return the path around each plate; the cutter's default `radius` is the roller's."""
-        from gearcam.kinds.cam.drawn import cutter_way
-
-        return {
-            f"{TOOL_PATH}_{wall.key}": cutter_way(part.contour, radius or wall.follower.radius)
-            for wall, part in zip(self.cam.walls, self.result.parts, strict=True)
-        }
-
-    def facts(self) -> dict[str, Any]:
-        """Return the place of the second roller, and both cams."""
-        from gearcam.kinds.cam.shown import curvature, pressure, size, start_angle, trimming
-
-        cam = self.cam
+    def facts(self, cam: ConjugateCam, made: Sequence[Contour]) -> dict[str, Any]:
+        """Return the place of the second roller, and both cams (see `Form.facts`)."""
         second = cam.second.follower
         first_facts, second_facts = (
             {
@@ -233,14 +223,14 @@ class Conjugate(Plates[ConjugateCam, ConjugateSpec, ConjugateFollower]):
                 **trimming(wall),
                 "profile": size(wall, finished, self.blank.clearance),
             }
-            for wall, finished in zip(cam.walls, self.result.contours, strict=True)
+            for wall, finished in zip(cam.walls, made, strict=True)
         )
         own = {
             "prime_radius_mm": Fact(cam.prime2, "prime radius"),
             "base_radius_mm": Fact(cam.prime2 - second.radius, "base radius"),
             "roller_radius_mm": second.radius,
             "arm_mm": self.follower.second(None).arm or None,
-            "pressure_angle_deg": pressure(self.result, cam.second),
+            "pressure_angle_deg": pressure(cam.second, self.design.limits),
         }
         return {
             "gap_mm": self.given.gap,
@@ -260,4 +250,4 @@ class Conjugate(Plates[ConjugateCam, ConjugateSpec, ConjugateFollower]):
         return [name.replace("part.", f"part.{number}.") for name in own_names]
 
 
-FORMS.register(Conjugate)
+ENTRIES: Final = (Conjugate,)

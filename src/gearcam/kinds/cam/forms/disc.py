@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.facts import Fact
 from gearcam.cams.disc import DiscCam, make_cam
 from gearcam.cams.placing import make_follower
 from gearcam.cams.spec import CamSpec, FollowerSpec
-from gearcam.kinds.cam.forms.base import FORMS, C, F, Form, S
+from gearcam.kinds.cam.forms.base import C, F, Form, S
+from gearcam.kinds.cam.wall_facts import curvature, ends_of, size, start_angle, trimming
 
 if TYPE_CHECKING:
+    from gearcam.kinds.cam.forms.base import Parts
     from gearcam.laws.program import Program
     from gearcam.numeric.contour import Contour
     from gearcam.parts.blank import WheelBlank
@@ -66,52 +68,47 @@ class Plates(Form[C, S, F]):
         place = workpiece(name, thickness)
         return make_part(name, [finished(profile, blank, place)], thickness, blank, place)
 
-    def parts(self) -> tuple[Part, ...]:
+    def parts(self, cam: C) -> tuple[Part, ...]:
         """Return the cam as its only part."""
-        return (self.plate(STEM, self.result.profile, self.blank),)
+        (wall,) = cam.walls
+        return (self.plate(STEM, wall.contour, self.blank),)
 
-    def finished(self) -> tuple[Contour, ...]:
-        """Return the outlines of the parts."""
-        return tuple(part.contour for part in self.result.parts)
+    def finished(self, cam: C, parts: Parts) -> tuple[Contour, ...]:  # noqa: ARG002
+        """Return the outlines of the parts (see `Form.finished`)."""
+        return tuple(part.contour for part in parts)
 
-    def drawings(self) -> tuple[Drawing, ...]:
-        """Return each plate with its pitch curve and prime circle."""
-        from gearcam.kinds.cam.drawn import plate
+    def drawings(self, cam: C, parts: Parts) -> tuple[Drawing, ...]:
+        """Return each plate with its pitch curve and prime circle (see `Form.drawings`)."""
+        from gearcam.kinds.cam.drawings import plate
 
-        rows = zip(self.result.parts, self.cam.walls, self.primes, strict=True)
+        rows = zip(parts, cam.walls, self.primes(cam), strict=True)
         return tuple(plate(*row) for row in rows)
 
-    def picture(self) -> Drawing:
-        """Return the plate, turned, below its follower."""
-        from gearcam.kinds.cam.drawn import follower, plate
+    def picture(self, cam: C, parts: Parts) -> Drawing:
+        """Return the plate, turned, below its follower (see `Form.picture`)."""
+        from gearcam.kinds.cam.drawings import follower, plate
 
-        (part,), (wall,), pose = self.result.parts, self.cam.walls, self.output.pose
-        side = -1.0 if wall.clockwise else 1.0
-        shapes = follower(wall, pose, self.reach)
-        return plate(part, wall, self.primes[0], shapes, angle=side * pose)
+        (part,), (wall,), (prime,), pose = parts, cam.walls, self.primes(cam), self.output.pose
+        shapes = follower(wall, pose, wall.contour.reach)
+        return plate(part, wall, prime, shapes, angle=wall.hand * pose)
 
-    @property
-    def primes(self) -> tuple[float, ...]:
-        """Radius of each plate's prime circle, for a flat follower of its base circle, mm."""
-        return (self.result.follower.prime_radius,)
+    def primes(self, cam: C) -> tuple[float, ...]:
+        """Return the radius of each prime circle, for a flat follower of its base circle, mm."""
+        return (cam.motions[0].follower.prime_radius,)
 
-    @property
-    def reach(self) -> float:
-        """Largest radius of the profiles, mm."""
-        return max(profile.reach for profile in self.result.profiles)
+    def paths(self, cam: C, parts: Parts) -> Mapping[str, Contour]:
+        """Return the path around each plate (see `Form.paths`)."""
+        from gearcam.kinds.cam.drawings import cutter_way
 
-    def paths(self, radius: float | None) -> Mapping[str, Contour]:
-        """Return the path around the plate."""
-        from gearcam.kinds.cam.drawn import cutter_way
+        radius = self.output.tool_radius
+        return {
+            f"{TOOL_PATH}{wall.ending}": cutter_way(part.contour, radius or wall.follower.radius)
+            for wall, part in zip(cam.walls, parts, strict=True)
+        }
 
-        own = self.result.follower.radius
-        return {TOOL_PATH: cutter_way(self.result.part.contour, radius or own)}
-
-    def facts(self) -> dict[str, Any]:
-        """Return curvature, undercut and size of the profile."""
-        from gearcam.kinds.cam.shown import curvature, ends_of, size, start_angle, trimming
-
-        (wall,), (finished,) = self.cam.walls, self.result.contours
+    def facts(self, cam: C, made: Sequence[Contour]) -> dict[str, Any]:
+        """Return curvature, undercut and size of the profile (see `Form.facts`)."""
+        (wall,), (finished,) = cam.walls, made
         place = wall.contact_place
         return {
             "curvature": curvature(wall),
@@ -136,4 +133,4 @@ class Disc(Plates[DiscCam, CamSpec, FollowerSpec]):
         return self.disc(program)
 
 
-FORMS.register(Disc)
+ENTRIES: Final = (Disc,)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from gearcam.base.errors import beyond_limit
 from gearcam.base.facts import Fact
@@ -21,12 +21,14 @@ from gearcam.cams.spec import (
     form_param,
 )
 from gearcam.designs.faults import Fault, show
-from gearcam.kinds.cam.forms.base import FORMS, Form
+from gearcam.kinds.cam.forms.base import Form
 from gearcam.kinds.cam.forms.disc import STEM, TOOL_PATH, workpiece
 from gearcam.kinds.cam.tables import CamBlank
+from gearcam.kinds.cam.wall_facts import curvature, size, start_angle, trimming
 from gearcam.parts.blank import OPENING_RULES
 
 if TYPE_CHECKING:
+    from gearcam.kinds.cam.forms.base import Parts
     from gearcam.laws.program import Program
     from gearcam.numeric.contour import Contour
     from gearcam.parts.body import Part, Recess
@@ -122,14 +124,17 @@ class Groove(Form[GrooveCam, GrooveSpec, GrooveFollower]):
         "blank": GrooveBlank,
     }
     rows = (
-        "cam.outer_diameter_mm", "cam.groove.width_mm", "cam.groove.depth_mm",
-        "cam.roller2_radius_mm", "cam.roller_clearance_mm", "cam.lost_motion",
-    )  # fmt: skip
+        "cam.outer_diameter_mm",
+        "cam.groove.width_mm",
+        "cam.groove.depth_mm",
+        "cam.roller2_radius_mm",
+        "cam.roller_clearance_mm",
+        "cam.lost_motion",
+    )
 
-    @property
-    def contact_width(self) -> float:
-        """Depth of the groove, mm, of which each of two rollers has half."""
-        return self.given.groove_depth * (0.5 if self.cam.relief else 1.0)
+    def contact_width(self, cam: GrooveCam) -> float:
+        """Return the depth of the groove, mm, of which each of two rollers has half."""
+        return self.given.groove_depth * (0.5 if cam.relief else 1.0)
 
     @classmethod
     def faults(cls, parts: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator[Fault]:
@@ -149,51 +154,50 @@ class Groove(Form[GrooveCam, GrooveSpec, GrooveFollower]):
             tolerance=self.chord_tolerance,
         )
 
-    def parts(self) -> tuple[Part, ...]:
+    def parts(self, cam: GrooveCam) -> tuple[Part, ...]:
         """Return the disc with its groove; openings and hub keep within the inner wall."""
         from gearcam.parts.make import make_part
         from gearcam.parts.shapes import Circle
 
-        thickness, profiles, relief = self.given.thickness, self.result.profiles, self.cam.relief
+        thickness, inner, relief = self.given.thickness, cam.inner.contour, cam.relief
         disc = Circle(center=0j, diameter=self.given.outer_diameter)
         within = [relief.contour] if relief is not None and relief.side > 0 else []
         return (
             make_part(
                 STEM,
-                [disc.contour(self.result.profile.tolerance)],
+                [disc.contour(inner.tolerance)],
                 thickness,
                 self.blank,
                 workpiece(STEM, thickness, within="the groove's inner wall"),
-                recesses=self._recesses(),
-                room=[*within, profiles[0]],
+                recesses=self._recesses(cam),
+                room=[*within, inner],
             ),
         )
 
-    def finished(self) -> tuple[Contour, ...]:
-        """Return the walls, which are made as they are touched."""
-        return self.result.profiles
+    def finished(self, cam: GrooveCam, parts: Parts) -> tuple[Contour, ...]:  # noqa: ARG002
+        """Return the walls, which are made as they are touched (see `Form.finished`)."""
+        return tuple(wall.contour for wall in cam.walls)
 
-    def drawings(self) -> tuple[Drawing, ...]:
-        """Return the disc with both walls and the pitch curve."""
-        from gearcam.kinds.cam.drawn import grooved
+    def drawings(self, cam: GrooveCam, parts: Parts) -> tuple[Drawing, ...]:
+        """Return the disc with both walls and the pitch curve (see `Form.drawings`)."""
+        from gearcam.kinds.cam.drawings import grooved
 
-        return (grooved(self.result.part, self.cam.walls),)
+        (part,) = parts
+        return (grooved(part, cam.walls),)
 
-    def picture(self) -> Drawing:
-        """Return the disc, turned, with its follower in the groove."""
-        from gearcam.kinds.cam.drawn import follower, grooved
+    def picture(self, cam: GrooveCam, parts: Parts) -> Drawing:
+        """Return the disc, turned, with its follower in the groove (see `Form.picture`)."""
+        from gearcam.kinds.cam.drawings import follower, grooved
 
-        motion, part, pose = self.cam.motion, self.result.part, self.output.pose
+        motion, (part,), pose = cam.motion, parts, self.output.pose
         shapes = follower(motion, pose, part.contour.reach)
-        side = -1.0 if motion.clockwise else 1.0
-        return grooved(part, self.cam.walls, shapes, angle=side * pose)
+        return grooved(part, cam.walls, shapes, angle=motion.hand * pose)
 
-    def paths(self, radius: float | None) -> Mapping[str, Contour]:
-        """Return the pitch curve for a tool as wide as the groove, else a path along each wall."""
-        from gearcam.kinds.cam.drawn import TOOL_RADIUS, cutter_way
+    def paths(self, cam: GrooveCam, parts: Parts) -> Mapping[str, Contour]:  # noqa: ARG002
+        """Return the pitch curve, or a path along each wall (see `Form.paths`)."""
+        from gearcam.kinds.cam.drawings import TOOL_RADIUS, cutter_way
 
-        cam = self.cam
-        widest = 0.5 * cam.width
+        radius, widest = self.output.tool_radius, 0.5 * cam.width
         if radius is not None and radius > widest:
             what = "the cutter is wider than the groove"
             note = "the limit is half the groove's width, included"
@@ -203,41 +207,42 @@ class Groove(Form[GrooveCam, GrooveSpec, GrooveFollower]):
         tool = widest if radius is None else radius
         walls = [*cam.walls, *([cam.relief] if cam.relief else [])]
         return {
-            f"{TOOL_PATH}_{wall.key}": cutter_way(wall.contour, tool, side=wall.side)
+            f"{TOOL_PATH}{wall.ending}": cutter_way(wall.contour, tool, side=wall.side)
             for wall in walls
         }
 
-    def facts(self) -> dict[str, Any]:
-        """Return sizes of the groove, its lost motion, and both walls."""
-        from gearcam.kinds.cam.shown import curvature, size, start_angle, trimming
-
-        walls = zip(self.cam.walls, self.result.profiles, strict=True)
+    def facts(self, cam: GrooveCam, made: Sequence[Contour]) -> dict[str, Any]:
+        """Return sizes of the groove, its lost motion, and both walls (see `Form.facts`)."""
         return {
             "outer_diameter_mm": Fact(self.given.outer_diameter, "diameter of the blank"),
             "side": self.given.side or "front",
             "roller2_radius_mm": self.follower.roller2_radius,
             "roller_clearance_mm": self.given.roller_clearance,
-            "start_angle_deg": start_angle(self.cam.motion),
+            "start_angle_deg": start_angle(cam.motion),
             "groove": {
-                "width_mm": Fact(self.cam.width, "width of the groove"),
+                "width_mm": Fact(cam.width, "width of the groove"),
                 "depth_mm": Fact(self.given.groove_depth, "depth of the groove"),
                 **{
                     wall.key: {
                         "curvature": curvature(wall),
                         **trimming(wall),
-                        **size(wall, profile),
+                        **size(wall, contour),
                     }
-                    for wall, profile in walls
+                    for wall, contour in zip(cam.walls, made, strict=True)
                 },
             },
         }
 
-    def _recesses(self) -> tuple[Recess, ...]:
+    def _recesses(self, cam: GrooveCam) -> tuple[Recess, ...]:
         """Return the groove: in one, or the deeper half for the smaller of two rollers."""
         from gearcam.parts.body import Opening, Recess
 
-        cam, thickness, depth = self.cam, self.given.thickness, self.given.groove_depth
-        inner, outer = self.result.profiles
+        thickness, depth, half = (
+            self.given.thickness,
+            self.given.groove_depth,
+            self.contact_width(cam),
+        )
+        inner, outer = (wall.contour for wall in cam.walls)
         front = self.given.side != "back"
 
         def recess(low: float, high: float, edges: tuple[Contour, Contour], width: float) -> Recess:
@@ -260,8 +265,8 @@ class Groove(Form[GrooveCam, GrooveSpec, GrooveFollower]):
         other = cam.outer if side > 0 else cam.inner
         width = cam.relief.follower.radius + other.follower.radius
         return (
-            recess(0.0, self.contact_width, upper, width),
-            recess(self.contact_width, depth, (inner, outer), cam.width),
+            recess(0.0, half, upper, width),
+            recess(half, depth, (inner, outer), cam.width),
         )
 
 
@@ -290,4 +295,4 @@ def milled_faults(parts: Mapping[str, Any], groove: str) -> Iterator[Fault]:
         yield Fault(("output", "files"), f"not for {groove}, which is milled", "cut-svg", rule)
 
 
-FORMS.register(Groove)
+ENTRIES: Final = (Groove,)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, ClassVar, cast
+from typing import TYPE_CHECKING, Any, ClassVar, Final, cast
 
 import numpy as np
 
@@ -32,10 +32,11 @@ from gearcam.cams.spec import (
 )
 from gearcam.cams.translating import TranslatingCam, make_translating
 from gearcam.designs.faults import Fault, show
-from gearcam.kinds.cam.forms.base import FORMS, Form
+from gearcam.kinds.cam.forms.base import Form
 from gearcam.kinds.cam.forms.disc import STEM, TOOL_PATH, workpiece
 from gearcam.kinds.cam.forms.groove import milled_faults
 from gearcam.kinds.cam.tables import CamBlank, CamOutputSpec
+from gearcam.kinds.cam.wall_facts import curvature, start_angle, trimming
 from gearcam.laws.phases_of_lift import DwellPhase, Phase
 from gearcam.laws.program import Program, make_program
 from gearcam.mechanics.drive import SlideDriveSpec
@@ -43,7 +44,9 @@ from gearcam.mechanics.load import SlideLoadSpec
 from gearcam.numeric.pose import Pose
 
 if TYPE_CHECKING:
+    from gearcam.base.tolerances import Tolerances
     from gearcam.cams.translating import TranslatingWall
+    from gearcam.kinds.cam.forms.base import Parts
     from gearcam.numeric.contour import Contour
     from gearcam.parts.body import Opening, Part
     from gearcam.pictures.drawings import Drawing, Path, Shape
@@ -110,12 +113,14 @@ class PlateSpec(CamSpec):
 
     rules = (
         only_with(
-            ("groove_depth", "roller_clearance", "side"), "walls", "both",
+            ("groove_depth", "roller_clearance", "side"),
+            "walls",
+            "both",
             why="does not apply to a cam with one wall",
         ),
         below("groove_depth", "thickness", why="the groove would have no floor"),
         needs("side", "groove_depth"),
-    )  # fmt: skip
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -221,18 +226,24 @@ class Translating(Form[TranslatingCam, PlateSpec, PlateFollower]):
     }
     moves = "sliding"
     rows = (
-        "cam.travel_mm", "cam.run_in_mm", "cam.run_out_mm", "cam.axis_deg", "cam.pivot_height_mm",
-        "cam.groove.width_mm", "cam.groove.depth_mm", "cam.roller_clearance_mm", "cam.lost_motion",
-    )  # fmt: skip
+        "cam.travel_mm",
+        "cam.run_in_mm",
+        "cam.run_out_mm",
+        "cam.axis_deg",
+        "cam.pivot_height_mm",
+        "cam.groove.width_mm",
+        "cam.groove.depth_mm",
+        "cam.roller_clearance_mm",
+        "cam.lost_motion",
+    )
 
     @property
     def step(self) -> tuple[str, float]:
         """Key and value of the step of tables of the motion, mm (see `Form.step`)."""
         return "output.travel_step_mm", self.output.travel_step
 
-    @property
-    def contact_width(self) -> float:
-        """Depth of a groove, or thickness of the plate, mm."""
+    def contact_width(self, cam: TranslatingCam) -> float:  # noqa: ARG002
+        """Return the depth of a groove, or the thickness of the plate, mm."""
         return self.given.groove_depth or self.given.thickness
 
     @classmethod
@@ -246,13 +257,13 @@ class Translating(Form[TranslatingCam, PlateSpec, PlateFollower]):
             yield Fault(("follower", "type"), message, follower.type, '"roller"')
         yield from milled_faults(parts, "a groove with a floor" if cam.groove_depth else "")
 
-    def program(self) -> Program:
+    def program(self, tolerances: Tolerances) -> Program:
         """Return the lift over the travel, with its run before and after."""
         motion = cast("Sequence[Phase]", self.design.motion)
         before, after = ([DwellPhase(angle=run)] if run else [] for run in self.given.runs)
         return make_program(
             [*before, *motion, *after],
-            self.result.tolerances,
+            tolerances,
             oscillating=self.follower.oscillating,
             closed=False,
         )
@@ -274,13 +285,13 @@ class Translating(Form[TranslatingCam, PlateSpec, PlateFollower]):
             tolerance=self.chord_tolerance,
         )
 
-    def parts(self) -> tuple[Part, ...]:
+    def parts(self, cam: TranslatingCam) -> tuple[Part, ...]:
         """Return the plate, with its wall or its groove, and its bolts."""
         from gearcam.parts.body import Opening, Part, Recess
         from gearcam.parts.openings import demand_apart
 
-        cam, thickness, depth = self._cut(), self.given.thickness, self.given.groove_depth
-        holes, recesses = list(self._bolts()), []
+        cam, thickness, depth = self._cut(cam), self.given.thickness, self.given.groove_depth
+        holes, recesses = list(self._bolts(cam)), []
         taken = holes
         if cam.groove is not None:
             slot = Opening(kind="GROOVE", shape=cam.groove, name="groove")
@@ -312,53 +323,53 @@ class Translating(Form[TranslatingCam, PlateSpec, PlateFollower]):
             ),
         )
 
-    def _bolts(self) -> Iterator[Opening]:
+    def _bolts(self, cam: TranslatingCam) -> Iterator[Opening]:
         """Yield the bolt holes, a row centred on the length of the plate."""
         from gearcam.parts.body import Opening
         from gearcam.parts.shapes import Circle
 
-        blank, plate = self.blank, self.cam.plate
+        blank, plate = self.blank, cam.plate
         middle, low = 0.5 * (plate.left + plate.right), plate.low + (blank.bolt_height or 0.0)
         for number in range(blank.bolts):
             aside = (number - 0.5 * (blank.bolts - 1)) * (blank.bolt_spacing or 0.0)
             shape = Circle(center=complex(middle + aside, low), diameter=blank.bolt_diameter)
             yield Opening(kind="HOLE", shape=shape, name=f"bolt hole {number + 1}")
 
-    def _cut(self) -> TranslatingCam:
+    def _cut(self, cam: TranslatingCam) -> TranslatingCam:
         """Return the finished cam: a single wall is moved back by the clearance of the blank."""
-        cam, clearance = self.cam, self.blank.clearance
+        clearance = self.blank.clearance
         if not clearance:
             return cam
         lower: TranslatingWall = cam.lower
         wide = replace(lower.follower, radius=lower.follower.radius + clearance)
         return replace(cam, lower=replace(lower, follower=wide))
 
-    def finished(self) -> tuple[Contour, ...]:
-        """Return the metal behind each wall, as made."""
-        return tuple(wall.contour for wall in self._cut().walls)
+    def finished(self, cam: TranslatingCam, parts: Parts) -> tuple[Contour, ...]:  # noqa: ARG002
+        """Return the metal behind each wall, as made (see `Form.finished`)."""
+        return tuple(wall.contour for wall in self._cut(cam).walls)
 
-    def drawings(self) -> tuple[Drawing, ...]:
-        """Return the plate with its pitch curve."""
-        return (self._drawing(),)
+    def drawings(self, cam: TranslatingCam, parts: Parts) -> tuple[Drawing, ...]:
+        """Return the plate with its pitch curve (see `Form.drawings`)."""
+        (part,) = parts
+        return (_drawing(cam, part),)
 
-    def picture(self) -> Drawing:
-        """Return the plate below its follower."""
-        from gearcam.kinds.cam.drawn import follower
+    def picture(self, cam: TranslatingCam, parts: Parts) -> Drawing:
+        """Return the plate below its follower (see `Form.picture`)."""
+        from gearcam.kinds.cam.drawings import follower
 
-        motion = self.cam.motion
-        reach = 0.5 * float(np.ptp(self.result.profile.vertices))
-        shapes = follower(motion, self.output.place, reach)
-        return self._drawing(shapes, self.output.place)
+        (part,), place = parts, self.output.place
+        reach = 0.5 * float(np.ptp(cam.lower.contour.vertices))
+        return _drawing(cam, part, follower(cam.motion, place, reach), place)
 
-    def paths(self, radius: float | None) -> Mapping[str, Contour | Path]:
-        """Return the path around the plate, or through the groove."""
-        from gearcam.kinds.cam.drawn import cutter_way
+    def paths(self, cam: TranslatingCam, parts: Parts) -> Mapping[str, Contour | Path]:  # noqa: ARG002
+        """Return the path around the plate, or through the groove (see `Form.paths`)."""
+        from gearcam.kinds.cam.drawings import cutter_way
         from gearcam.pictures.drawings import Path
 
-        cam = self._cut()
+        own, cam = cam.motion.follower.radius, self._cut(cam)
         if cam.groove is None:
-            return {TOOL_PATH: cutter_way(cam.edge, radius or self.result.follower.radius)}
-        radius = radius or 0.5 * cam.width
+            return {TOOL_PATH: cutter_way(cam.edge, self.output.tool_radius or own)}
+        radius = self.output.tool_radius or 0.5 * cam.width
         if abs(2.0 * radius - cam.width) <= _ROUNDING * cam.width:
             return {TOOL_PATH: Path(points=cam.lower.pitch_line, closed=False)}
         return {TOOL_PATH: cutter_way(cam.groove, radius, side=-1)}
@@ -368,11 +379,11 @@ class Translating(Form[TranslatingCam, PlateSpec, PlateFollower]):
         """The name of the size for the headline."""
         return "travel_mm"
 
-    def sizes(self) -> dict[str, Any]:
-        """Return its sizes, as facts."""
-        plate = self.cam.plate
+    def sizes(self, cam: TranslatingCam) -> dict[str, Any]:
+        """Return the sizes of a `cam`, as facts."""
+        plate = cam.plate
         return {
-            "travel_mm": Fact(self.cam.travel, "travel"),
+            "travel_mm": Fact(cam.travel, "travel"),
             "run_in_mm": self.given.run_in or None,
             "run_out_mm": self.given.run_out or None,
             **self.follower.placement,
@@ -380,11 +391,9 @@ class Translating(Form[TranslatingCam, PlateSpec, PlateFollower]):
             "height_mm": plate.high - plate.low,
         }
 
-    def facts(self) -> dict[str, Any]:
-        """Return curvature, undercut and length of the walls, and the lost motion in a groove."""
-        from gearcam.kinds.cam.shown import curvature, start_angle, trimming
-
-        cam, given = self.cam, self.given
+    def facts(self, cam: TranslatingCam, made: Sequence[Contour]) -> dict[str, Any]:
+        """Return curvature, undercut and length of the walls, and the groove (see `Form.facts`)."""
+        given = self.given
         walls = {
             wall.key or "profile": {
                 "curvature": curvature(wall),
@@ -394,7 +403,7 @@ class Translating(Form[TranslatingCam, PlateSpec, PlateFollower]):
                 "vertices": len(wall.line),
                 "chord_error_mm": contour.chord_error,
             }
-            for wall, contour in zip(cam.walls, self.result.contours, strict=True)
+            for wall, contour in zip(cam.walls, made, strict=True)
         }
         start = {"start_angle_deg": start_angle(cam.motion)}
         if cam.groove is None:
@@ -410,28 +419,27 @@ class Translating(Form[TranslatingCam, PlateSpec, PlateFollower]):
             },
         }
 
-    def _drawing(self, follower: Sequence[Shape] = (), travel: float = 0.0) -> Drawing:
-        """Return the plate with its pitch curve, moved by its travel below a follower."""
-        from gearcam.kinds.cam.drawn import cam_drawing
-        from gearcam.pictures.drawings import BLANK, GROOVE, OUTER_WALL, PROFILE, Path
 
-        cam = self.cam
-        pitch = Path(points=cam.lower.pitch_line, closed=False)
-        drawing = cam_drawing(
-            self.result.part,
-            pitch if cam.motion.follower.radius else None,
-            None,
-            follower,
-            pose=Pose(shift=travel),
-            outline=PROFILE if cam.groove is None else BLANK,
-        )
-        return replace(
-            drawing,
-            features=tuple(
-                replace(one, layer=GROOVE) if one.layer == OUTER_WALL else one
-                for one in drawing.features
-            ),
-        )
+def _drawing(
+    cam: TranslatingCam, part: Part, follower: Sequence[Shape] = (), travel: float = 0.0
+) -> Drawing:
+    """Return the plate with its pitch curve, moved by its travel below a follower."""
+    from gearcam.kinds.cam.drawings import cam_drawing
+    from gearcam.pictures.drawings import BLANK, GROOVE, OUTER_WALL, PROFILE, Path
+
+    pitch = Path(points=cam.lower.pitch_line, closed=False)
+    drawing = cam_drawing(
+        part,
+        pitch if cam.motion.follower.radius else None,
+        None,
+        follower,
+        pose=Pose(shift=travel),
+        outline=PROFILE if cam.groove is None else BLANK,
+    )
+    features = (
+        replace(one, layer=GROOVE) if one.layer == OUTER_WALL else one for one in drawing.features
+    )
+    return replace(drawing, features=tuple(features))
 
 
-FORMS.register(Translating)
+ENTRIES: Final = (Translating,)

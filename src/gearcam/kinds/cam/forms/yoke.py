@@ -15,7 +15,7 @@ from gearcam.base.rules import excluded
 from gearcam.cams.disc import YokeCam, make_yoke
 from gearcam.cams.spec import FACE_RULES, GUIDE_RULES, CamSpec, FollowerSpec, form_param
 from gearcam.designs.nodes import written
-from gearcam.kinds.cam.forms.base import FORMS, Form
+from gearcam.kinds.cam.forms.base import Form
 from gearcam.kinds.cam.forms.disc import Plates
 from gearcam.laws.half_turns import agreeing, completed, miss
 from gearcam.laws.phases_of_lift import fill_half
@@ -24,7 +24,10 @@ from gearcam.numeric.pose import Pose
 from gearcam.pictures.drawings import FOLLOWER, Feature, placed
 
 if TYPE_CHECKING:
+    from gearcam.base.tolerances import Tolerances
+    from gearcam.kinds.cam.forms.base import Parts
     from gearcam.kinds.cam.motion import Motion
+    from gearcam.numeric.contour import Contour
     from gearcam.pictures.drawings import Drawing
 
 _MISS: Final = 1e-6
@@ -90,12 +93,12 @@ class Yoke(Plates[YokeCam, YokeSpec, YokeFollower]):
     half_turns = True
     rows = ("cam.breadth_mm", "cam.roller_distance_mm", "cam.face_width_mm")
 
-    def program(self) -> Program:
+    def program(self, tolerances: Tolerances) -> Program:
         """Return the lift over a turn: half of it and its opposite, or two opposite half turns."""
         motion = self.design.motion
         if isinstance(motion, Sequence) and fill_half(motion):
-            return completed(make_program(motion, self.result.tolerances, half=True))
-        program = super().program()
+            return completed(make_program(motion, tolerances, half=True))
+        program = super().program(tolerances)
         _demand_opposite(program, motion)
         return program
 
@@ -103,24 +106,23 @@ class Yoke(Plates[YokeCam, YokeSpec, YokeFollower]):
         """Return the cam."""
         return make_yoke(self.disc(program))
 
-    def picture(self) -> Drawing:
-        """Return the plate, turned, between the two sides of its follower."""
-        from gearcam.kinds.cam.drawn import follower
+    def picture(self, cam: YokeCam, parts: Parts) -> Drawing:
+        """Return the plate, turned, between the two sides of its follower (see `Form.picture`)."""
+        from gearcam.kinds.cam.drawings import follower
 
-        (wall,), pose = self.cam.walls, self.output.pose
-        other, drawing = follower(wall, pose + math.pi, self.reach), super().picture()
+        (wall,), drawing = cam.walls, super().picture(cam, parts)
+        other = follower(wall, self.output.pose + math.pi, wall.contour.reach)
         second = (Feature(layer=FOLLOWER, shape=placed(shape, Pose(math.pi))) for shape in other)
         return replace(drawing, features=(*drawing.features, *second))
 
-    def sizes(self) -> dict[str, Any]:
-        """Return its sizes, as facts; its follower has no offset."""
-        return {**super().sizes(), "offset_mm": None}
+    def sizes(self, cam: YokeCam) -> dict[str, Any]:
+        """Return the sizes of a `cam`, as facts; its follower has no offset."""
+        return {**super().sizes(cam), "offset_mm": None}
 
-    def facts(self) -> dict[str, Any]:
-        """Return the facts of a disc cam, and the distance of both sides of the follower."""
-        cam = self.cam
+    def facts(self, cam: YokeCam, made: Sequence[Contour]) -> dict[str, Any]:
+        """Return the facts of a disc cam, and the distance of both sides (see `Form.facts`)."""
         return {
-            **super().facts(),
+            **super().facts(cam, made),
             **self.follower.facts_of(cam),
             "face_width_mm": cam.face_width and Fact(cam.face_width, "least width of the faces"),
             "least_base_radius_mm": cam.least_base_radius,
@@ -148,4 +150,4 @@ def _demand_opposite(program: Program, motion: Motion) -> None:
     raise beyond_limit(what, where, off.value, _MISS, rule, adjustments=adjustments, unit="mm")
 
 
-FORMS.register(Yoke)
+ENTRIES: Final = (Yoke,)

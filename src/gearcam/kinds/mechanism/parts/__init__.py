@@ -24,9 +24,19 @@ from gearcam.kinds.mechanism.parts.slide import SlideSpec
 from gearcam.kinds.mechanism.parts.spring import MachineSpring
 
 __all__ = [
-    "ChainSpec", "CrankSpec", "DyadSpec", "GenevaSpec", "GuideSpec", "HoistSpec", "JointSpec",
-    "MachineLoad", "MachineSpring", "MemberMass", "PointSpec", "SlideSpec",
-]  # fmt: skip
+    "ChainSpec",
+    "CrankSpec",
+    "DyadSpec",
+    "GenevaSpec",
+    "GuideSpec",
+    "HoistSpec",
+    "JointSpec",
+    "MachineLoad",
+    "MachineSpring",
+    "MemberMass",
+    "PointSpec",
+    "SlideSpec",
+]
 
 PARTS: Final[Mapping[str, type[MachinePart]]] = {
     "joint": JointSpec,

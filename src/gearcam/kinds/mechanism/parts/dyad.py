@@ -18,7 +18,7 @@ from gearcam.kinds.mechanism.asked import DEG, Output, coordinates
 from gearcam.kinds.mechanism.keys import NameUse, Sort, angle_param, named, point_param
 from gearcam.kinds.mechanism.parts.part import MachinePart, Setting, Tree, in_degrees, not_closing
 from gearcam.linkages.coordinates import PointWay
-from gearcam.linkages.dyads import DYADS, Lengths
+from gearcam.linkages.dyads import DYADS, DyadType, Lengths
 from gearcam.linkages.elements import BRANCH, MOTION, Dyad, Element
 
 if TYPE_CHECKING:
@@ -141,13 +141,12 @@ class DyadSpec(MachinePart):
 
     def _idle(self) -> Iterator[Breach]:
         """Yield what has no effect in a dyad of this type."""
-        dyad = DYADS[self.formula]
-        if self.beta and not {"member1", "member2"} & {*dyad.slides}:
+        if self.beta and not {"member1", "member2"} & {*self.kind.slides}:
             yield "beta", None, f"does not apply to {self.type}", "with type RTR, RTT or TTR"
         if self.slide_on == 2 and self.type != "RTR":
             yield "slide_on", None, f"does not apply to {self.type}", "with type RTR"
         for number, gamma in enumerate(self.gammas):
-            if gamma and not dyad.guides[number]:
+            if gamma and not self.kind.guides[number]:
                 what = f"{self.members[number]} slides on no guide in {self.type}"
                 yield "gammas", number, what, "0"
         for name in () if self.branches else ("near", "change"):
@@ -174,21 +173,24 @@ class DyadSpec(MachinePart):
         return self.type if self.type in DYADS else f"{self.type}{self.slide_on}"
 
     @property
+    def kind(self) -> DyadType:
+        """What is the same of all dyads of its type."""
+        return DYADS[self.formula]
+
+    @property
     def branches(self) -> tuple[str, ...]:
         """Names of its positions."""
-        return DYADS[self.formula].branches
+        return self.kind.branches
 
     @property
     def rods(self) -> tuple[int, ...]:
         """Which of its lengths must be above 0."""
-        found = DYADS[self.formula].rods
-        return found[1:] if self.type == _CYLINDER else found
+        return self.kind.rods[1:] if self.type == _CYLINDER else self.kind.rods
 
     @property
     def _crossed(self) -> int | None:
         """The member that slides on a guide and on the other member."""
-        slides = DYADS[self.formula].slides
-        both = (k for k in (0, 1) if {f"guide{k + 1}", f"member{k + 1}"} <= {*slides})
+        both = (k for k in (0, 1) if {f"guide{k + 1}", f"member{k + 1}"} <= {*self.kind.slides})
         return next(both, None)
 
     # --- the linkage -----------------------------------------------------------------------------
@@ -196,8 +198,8 @@ class DyadSpec(MachinePart):
     def needed(self) -> Iterator[NameUse]:
         """Yield the names that it needs: its type says whether it begins at joints or guides."""
         yield from super().needed()
-        guides = DYADS[self.formula].guides
-        for name, key, guided in zip((self.first, self.last), ("from", "to"), guides, strict=True):
+        ends = zip((self.first, self.last), ("from", "to"), self.kind.guides, strict=True)
+        for name, key, guided in ends:
             yield NameUse(name, Sort.GUIDE if guided else Sort.JOINT, (key,))
 
     def elements(self, setting: Setting, where: str) -> Iterator[Dyad]:
@@ -284,7 +286,7 @@ class DyadSpec(MachinePart):
     @property
     def moves(self) -> str:
         """Name of the place of its joint on a guide, if it slides on one that is given."""
-        slides = [one for one in DYADS[self.formula].slides if one.startswith("guide")]
+        slides = [one for one in self.kind.slides if one.startswith("guide")]
         return f"{self.joint}.{slides[0]}" if len(slides) == 1 else ""
 
     def outputs(self) -> Mapping[str, tuple[Output, ...]]:
@@ -344,9 +346,8 @@ class DyadSpec(MachinePart):
         if base:
             found = grashof(FourBarLengths(crank.length, lengths[0], lengths[1], base))
             label = f"Grashof's class of {self.joint}"
-            yield "four_bars", self.joint, {
-                "class": Fact(found.name, label), "meaning": found.meaning,
-            }  # fmt: skip
+            tree: Tree = {"class": Fact(found.name, label), "meaning": found.meaning}
+            yield "four_bars", self.joint, tree
 
     def called(self) -> str:
         """Return its type."""
@@ -375,7 +376,7 @@ class DyadSpec(MachinePart):
     def guided(self) -> Iterator[tuple[str, str]]:
         """Yield the guides at which its members begin, and the places of its joint on them."""
         for k, name in enumerate((self.first, self.last)):
-            if DYADS[self.formula].guides[k]:
+            if self.kind.guides[k]:
                 yield name, f"{self.joint}.guide{k + 1}"
 
     def draw(self, picture: Picture) -> None:
@@ -387,15 +388,15 @@ class DyadSpec(MachinePart):
                 picture.cylinder(self.members[0], self.joint, _BARREL)
 
     def _draw_member(self, picture: Picture, k: int) -> None:
-        kind, own, other = DYADS[self.formula], f"member{k + 1}", f"member{2 - k}"
-        blocks = [(0j, -self.gammas[k])] if kind.guides[k] else []
-        if own in kind.slides:
+        own, other = f"member{k + 1}", f"member{2 - k}"
+        blocks = [(0j, -self.gammas[k])] if self.kind.guides[k] else []
+        if own in self.kind.slides:
             along = picture.turn(f"{self.joint}.{own}")
             bar = picture.reach(float(along.min()), float(along.max()))
             picture.member(self.members[k], 0j, blocks=blocks, bars=[bar])
             return
         end = complex(self.lengths[k])
-        if other in kind.slides:
+        if other in self.kind.slides:
             blocks.append((end, (self.beta, -self.beta)[k]))
         picture.member(self.members[k], *([0j, end] if end else [0j]), blocks=blocks)
 

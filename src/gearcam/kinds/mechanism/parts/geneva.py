@@ -45,9 +45,15 @@ class GenevaSpec(MachinePart):
         """Yield the wheel (see `MachinePart`)."""
         center = self.at or center_of(self.on)
         yield GenevaWheel(
-            self.name, self.on, center, self.length, self.slots, self.direction, self.angle,
+            self.name,
+            self.on,
+            center,
+            self.length,
+            self.slots,
+            self.direction,
+            self.angle,
             self.internal,
-        )  # fmt: skip
+        )
 
     def period(self) -> int:
         """Return how many turns of the crank lead round."""

@@ -89,19 +89,18 @@ def guided_chain(result: Any, limit: float) -> Iterator[Remark]:  # noqa: ARG001
 
     Looks at: how far it passes beside the shaft, and the radius of the wheel.
     """
-    for number, one in enumerate(result.design.hoist):
-        shaft, at = shaft_place(result, one.on), complex(*one.at)
+    for number, hoist in enumerate(result.design.hoist):
+        shaft, at = shaft_place(result, hoist.on), complex(*hoist.at)
         # the chain is wound up on this side of the wheel
-        side = -1j * cmath.exp(1j * one.direction) * one.side
+        side = -1j * cmath.exp(1j * hoist.direction) * hoist.side
         beside = ((at - shaft) * side.conjugate()).real
-        if abs(beside - one.radius) > NEAR * one.radius:
-            straight = at + side * (one.radius - beside)
+        if abs(beside - hoist.radius) > NEAR * hoist.radius:
+            straight = at + side * (hoist.radius - beside)
             yield Remark(
-                "The chain does not lead straight to its wheel on the shaft "
-                f"{one.on}, at ({numbers(shaft)}) mm: this is how far it passes beside the shaft, "
-                "on the side where it is wound up, not the radius of "
-                f"{formatted(one.radius, 6)} mm. It is taken to be guided; it is straight with "
-                f"at_mm = [{numbers(straight)}].",
+                f"The chain does not lead straight to its wheel on the shaft {hoist.on}, at "
+                f"({numbers(shaft)}) mm: this is how far it passes beside the shaft, on the side "
+                f"where it is wound up, not the radius of {formatted(hoist.radius, 6)} mm. It is "
+                f"taken to be guided; it is straight with at_mm = [{numbers(straight)}].",
                 f"hoist[{number}].at_mm",
                 beside,
             )

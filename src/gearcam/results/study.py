@@ -1,0 +1,166 @@
+"""The outcome of a study of a result: its table, facts, findings, charts and files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from numpy.typing import ArrayLike
+
+from gearcam.base.display import NotebookView, cut
+from gearcam.base.facts import Facts
+from gearcam.base.findings import Finding, in_order
+from gearcam.base.pickling import pickled
+from gearcam.numeric.columns import Columns
+from gearcam.results.kind import Study
+from gearcam.results.staged import Staged
+from gearcam.results.written import BuildOutput
+
+if TYPE_CHECKING:
+    from gearcam.pictures.charts import Chart
+    from gearcam.pictures.scenes import ContactPoints, Scene
+
+Progress = Callable[[str, int, int], None]
+"""Called with the name of the next stage, the number of stages done and their total."""
+
+
+def silent(stage: str, done: int, total: int) -> None:
+    """Tell nobody of progress (see `Progress`)."""
+
+
+def merged(checked: Sequence[Finding], studies: Collection[StudyResult]) -> tuple[Finding, ...]:
+    """Return the findings of `studies`, and those `checked` that they do not repeat, in order."""
+    repeated = {code for one in studies for code in one.study.repeats}
+    kept = (one for one in checked if one.code not in repeated)
+    return in_order((*kept, *(finding for one in studies for finding in one.study_findings)))
+
+
+def _nothing(_: Scene) -> dict[str, ContactPoints]:
+    return {}
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class StudyResult(NotebookView):
+    """The outcome of a study of a result.
+
+    Parameters
+    ----------
+    result : Result
+        The result studied.
+    study : Study
+        The study.
+    file : str
+        Name of the CSV file for the table.
+    table : mapping of str to (n,) array
+        Columns by name, with the unit at the end of the name.
+    group : mapping
+        Its facts.
+    study_findings : tuple of Finding
+        Its findings.
+    drawn : callable
+        ``drawn()`` returns its `charts`; called when they are first read.
+    overlay : callable
+        ``overlay(scene)`` returns points of contact for the moving picture, by name.
+    pages : mapping of str to bytes
+        Files beside the table, by name.
+    lines : tuple of str
+        Lines to print in place of its facts.
+    interrupted : str
+        How much was done when it was interrupted: ``125 of 1000 steps``; empty if it is complete.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> study = gc.build(gc.load("profiles/ellipse.toml")).mesh(steps=4)
+    >>> study.columns["phi1_deg"][:3], study.complete
+    (array([ 0.,  0., 90.]), True)
+    """
+
+    result: Staged
+    study: Study
+    file: str
+    table: Mapping[str, ArrayLike]
+    group: Mapping[str, Any]
+    study_findings: tuple[Finding, ...] = ()
+    drawn: Callable[[], Mapping[str, Chart]] = dict
+    overlay: Callable[[Scene], Mapping[str, ContactPoints]] = _nothing
+    pages: Mapping[str, bytes] = field(default_factory=dict)
+    lines: tuple[str, ...] = ()
+    interrupted: str = ""
+
+    @property
+    def complete(self) -> bool:
+        """Whether it was not interrupted."""
+        return not self.interrupted
+
+    def __repr__(self) -> str:
+        rows = len(next(iter(self.columns.values()), ()))
+        state = "" if self.complete else " (interrupted)"
+        return cut(
+            f'<StudyResult{state}: {rows} rows, as in {self.file}, of "{self.result.design.name}">'
+        )
+
+    @cached_property
+    def charts(self) -> Mapping[str, Chart]:
+        """Its charts by name."""
+        return self.drawn()
+
+    def __getstate__(self) -> dict[str, Any]:
+        # what charts are drawn from need not be picklable
+        return pickled({**vars(self), "charts": self.charts, "drawn": dict})
+
+    @cached_property
+    def columns(self) -> Columns:
+        """The table with the columns of the CSV file; missing values are NaN."""
+        return Columns(self.table)
+
+    @cached_property
+    def facts(self) -> Facts:
+        """The facts of the result and of the study (see docs/summary.md)."""
+        return self.result.design_facts.with_groups({self.study.key: self.group})
+
+    @cached_property
+    def findings(self) -> tuple[Finding, ...]:
+        """Findings of the study, and those of the design that it does not repeat; errors first."""
+        return merged(self.result.checked, (self,))
+
+    def picture(self) -> str:
+        """Return an empty text: a study has no picture."""
+        return ""
+
+    @property
+    def files(self) -> dict[str, bytes]:
+        """Its files: the table and its pages, by name."""
+        from gearcam.export.table import table_bytes
+
+        return {self.file: table_bytes(self.table), **self.pages}
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the content of ``summary.json`` without files (see `Result.to_dict`)."""
+        return self.result.summary(self.facts, self.findings).document()
+
+    def write(self, directory: str | Path = "output") -> BuildOutput:
+        """Write its files and the summary; the files of a build are kept.
+
+        Parameters
+        ----------
+        directory : path
+            Parent folder.
+
+        Returns
+        -------
+        BuildOutput
+            With the files and the summary.
+
+        Raises
+        ------
+        WriteError
+            If a file cannot be written.
+        """
+        summary = self.result.summary(self.facts, self.findings)
+        written = summary.write(directory, self.files, keep=True)
+        lines = self.lines or tuple(self.facts.lines(f"{self.study.key}."))
+        return replace(written, table=lines, interrupted=self.interrupted)
