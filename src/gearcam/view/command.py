@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import os
 import threading
 import time
 import webbrowser
 from argparse import ArgumentParser
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import active_children, get_context
-from typing import Any, Final
 
 from gearcam.base.interrupts import unbroken
 from gearcam.commands import GOOD, Options, each
@@ -19,10 +15,7 @@ from gearcam.designs.reader import content_of
 from gearcam.view.server import Server
 from gearcam.view.session import Session, State
 from gearcam.view.watch import PAUSE, Watch
-from gearcam.view.work import begin
-
-_WORKERS: Final = range(2, 5)
-"""Number of workers: drafts overlap with other builds, but more than four do not help."""
+from gearcam.view.workers import Workers
 
 
 def arguments(parser: ArgumentParser) -> None:
@@ -47,34 +40,22 @@ def view(options: Options) -> int:
 def _serve(file: str, port: int, *, browser: bool) -> None:
     """Serve the page of a design `file`; one with errors is shown once it is corrected."""
     content_of(file)
-    count = min(max(os.cpu_count() or 1, _WORKERS.start), _WORKERS.stop - 1)
-    context = get_context("spawn")  # threads of a server do not survive a fork
-    with ProcessPoolExecutor(count, mp_context=context, initializer=begin) as workers:
-        session = Session(file, workers, count, reporter(file))
-        with Server(session, port) as server:
-            try:
-                with unbroken():
-                    threading.Thread(target=server.serve_forever, daemon=True).start()
-                say(f"{file}: live view at {server.address} (Ctrl-C ends it)")
-                if browser:
-                    webbrowser.open(server.address)
-                _follow(session)
-            except KeyboardInterrupt:
-                say("the live view has ended")
-            finally:
-                session.end()
-                server.shutdown()
-                end_at_once(workers)
-
-
-def end_at_once(workers: ProcessPoolExecutor) -> None:
-    """End `workers` whatever they are doing: one that is still building would delay the exit."""
-    replies: Any = vars(workers)["_result_queue"]
-    workers.shutdown(wait=False, cancel_futures=True)
-    for worker in active_children():
-        worker.kill()
-    # the rest of a reply that one was writing is waited for as long as the pipe has a writer: here
-    replies._writer.close()
+    workers = Workers()
+    session = Session(file, workers, workers.count, reporter(file))
+    with Server(session, port) as server:
+        try:
+            with unbroken():
+                threading.Thread(target=server.serve_forever, daemon=True).start()
+            say(f"{file}: live view at {server.address} (Ctrl-C ends it)")
+            if browser:
+                webbrowser.open(server.address)
+            _follow(session)
+        except KeyboardInterrupt:
+            say("the live view has ended")
+        finally:
+            session.end()
+            server.shutdown()
+            workers.end()
 
 
 def _follow(session: Session) -> None:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import codecs
 import hashlib
+import json
 import threading
 from collections.abc import Callable, Mapping
-from concurrent.futures import Executor, Future
+from concurrent.futures import BrokenExecutor, Executor, Future
 from dataclasses import dataclass, field, replace
 from functools import partial
 from textwrap import indent
@@ -18,6 +19,8 @@ from gearcam.designs.reader import content_of, decoded
 from gearcam.export.write import rewrite
 from gearcam.view import work
 from gearcam.view.numbers import numbers, replaced
+
+_KILLED: Final = "the process that built it was killed twice: perhaps there was no memory left"
 
 _LARGEST: Final = 1e15
 """Largest number of a design; whole numbers beyond it are not exact."""
@@ -199,7 +202,10 @@ class Session:
 
         def reply() -> bytes:
             one = self._workers.submit(work.follow, state.text, self.file, values, last, exact)
-            return one.result()
+            try:
+                return one.result()
+            except BrokenExecutor:
+                return json.dumps({"error": f"{self.file}: {_KILLED}"}).encode()
 
         return self._newest.run(reply)
 
@@ -340,5 +346,7 @@ def _result(done: Future[work.Reply], file: str) -> work.Reply:
     """Return the reply of a worker, or an error if it has died."""
     try:
         return done.result()
+    except BrokenExecutor:
+        return {"error": f"{file}: {_KILLED}"}
     except Exception as error:
         return {"error": work.fault_text(error, file)}

@@ -10,8 +10,6 @@ import subprocess
 import sys
 import threading
 import time
-from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +17,7 @@ import pytest
 
 import helpers_interrupts
 from gearcam.base.interrupts import SIGNALS, interruptible, unbroken
-from gearcam.view.command import end_at_once
+from gearcam.view.workers import Workers
 from helpers_interrupts import AFTER, BEFORE, CASES, EVERY, PAIR
 from helpers_processes import ENVIRONMENT
 from helpers_sampling import chosen
@@ -210,13 +208,13 @@ def test_the_view_ends_its_workers_at_once(tmp_path: Path, name: str, code: int)
 def test_workers_that_are_writing_replies_end_at_once() -> None:
     """The thread that reads the replies does not wait for the rest of one."""
     for number in range(24):
-        workers = ProcessPoolExecutor(2, mp_context=get_context("spawn"))
+        workers = Workers()
         assert workers.submit(bytes, 1).result() == b"\0"
         for _ in range(3):
             workers.submit(bytes, 80_000_000)
-        reader = vars(workers)["_executor_manager_thread"]
+        reader = vars(workers._pool)["_executor_manager_thread"]
         time.sleep(0.03 + 0.002 * number)  # some are in the middle of a reply
-        end_at_once(workers)
+        workers.end()
         reader.join(10.0)
         assert not reader.is_alive()
 
