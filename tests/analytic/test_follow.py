@@ -198,7 +198,7 @@ def test_corners_without_points_are_cut_off_a_polygon() -> None:
 # --- polylines with bulges ---------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", FOLLOWERS)
+@pytest.mark.parametrize("name", few(FOLLOWERS))
 def test_two_arcs_are_a_circle(name: str) -> None:
     follower, exact = FOLLOWERS[name], on_circle(FOLLOWERS[name], THETA)
     ends = np.array([MIDDLE + RADIUS, MIDDLE - RADIUS])
@@ -313,7 +313,7 @@ MADE = [
 ]
 
 
-@pytest.mark.parametrize("follower", MADE)
+@pytest.mark.parametrize("follower", few(MADE))
 @pytest.mark.parametrize("rise", few([parabolas, polynomial]))
 @pytest.mark.parametrize("uneven", few([True, False]))
 def test_a_cam_gives_the_lift_it_was_made_for(

@@ -14,6 +14,7 @@ from gearcam.cams.follower_loads import Loads
 from gearcam.cams.statics import Statics
 from gearcam.cams.supports import StraightGuide
 from gearcam.kinds.cam.under_load import UnderLoad, loads_of
+from helpers_sampling import few
 
 CAM = """
 kind = "cam"
@@ -86,7 +87,7 @@ def test_without_friction_the_driver_does_the_virtual_work(name: str) -> None:
     assert found.torque == pytest.approx(found.useful, abs=1e-10 * abs(found.useful).max())
 
 
-@pytest.mark.parametrize("name", PROFILES)
+@pytest.mark.parametrize("name", few(PROFILES))
 def test_power_in_is_power_out_and_losses(name: str) -> None:
     found, _, _ = studied(loaded(name, **FRICTION))
     moved = found.carrying >= 0
@@ -97,7 +98,7 @@ def test_power_in_is_power_out_and_losses(name: str) -> None:
     assert sum(values[moved].sum() for values in found.lost.values()) > 0.0
 
 
-@pytest.mark.parametrize("name", PROFILES)
+@pytest.mark.parametrize("name", few(PROFILES, 3))
 def test_efficiencies_lie_between_0_and_1(name: str) -> None:
     found, _, _ = studied(loaded(name, **FRICTION))
     told = found.efficiency[np.isfinite(found.efficiency)]

@@ -85,7 +85,7 @@ def test_the_wheels_of_the_profile_are_one_part() -> None:
     assert apart < 5e-3
     beside = region(one).hausdorff_distance(region(two * turned * np.exp(0.01j)))
     assert beside > 0.1
-    study = gc.build(made.design).mesh(steps=24)
+    study = gc.build(made.design).mesh(steps=8)
     assert study.facts["meshing.interference_steps"] == 0
 
 

@@ -164,7 +164,7 @@ def test_a_wheel_moves_as_a_buffer_does(by: float, sign: int) -> None:
     assert (sign * turns).max() < 1e-4
 
 
-@pytest.mark.parametrize("radius", [0.3, 0.5, 1.0])
+@pytest.mark.parametrize("radius", few([0.3, 0.5, 1.0], 3))
 def test_a_wheel_is_rounded_as_an_opening_does(radius: float) -> None:
     contour = gear()
     made = rounded(contour, radius)

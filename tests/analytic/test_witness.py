@@ -88,7 +88,7 @@ def test_fewest_teeth_of_an_ellipse(e: float, text: str) -> None:
 
 @pytest.mark.parametrize(
     ("offset", "teeth", "ratio", "distance"),
-    [(0.1, None, "2.00498446026775", None), (0.3, 24, "2.04379288568712", "24.5255146282")],
+    few([(0.1, None, "2.00498446026775", None), (0.3, 24, "2.04379288568712", "24.5255146282")]),
 )
 def test_eccentric_circle(
     offset: float, teeth: int | None, ratio: str, distance: str | None

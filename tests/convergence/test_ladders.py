@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import gearcam
-from gearcam.kinds.cam import studies as cam_ladders
+from gearcam.kinds.cam import ladders as cam_ladders
 from gearcam.numeric.chebyshev import expand
 from gearcam.results.accuracy import Accuracy, accuracy
 from gearcam.results.ladders import chord_distance, integral_ladder

@@ -161,7 +161,7 @@ def test_harmonics_between_those_of_a_turn() -> None:
 @pytest.mark.parametrize(
     ("settings", "reason"),
     [
-        ({"steps": 32 * 8 - 1}, "steps = 256"),
+        pytest.param({"steps": 32 * 8 - 1}, "steps = 256", marks=pytest.mark.slow),
         ({"steps": 90, "end": math.radians(90.0)}, "whole turns"),
         ({"steps": 400, "teeth": (1,)}, "not every phase"),
     ],
@@ -201,6 +201,7 @@ def test_rounding_is_not_a_transmission_error() -> None:
     assert found["lag_mm"] == found["backlash_mm"] == {"min": 0.0, "max": 0.0}
 
 
+@pytest.mark.slow
 def test_small_transmission_errors_are_shown() -> None:
     """They grow with the centre distance: one of 1e-9 rad is a ten-thousandth of 1e-5 rad."""
     made = profile("ellipse")

@@ -41,7 +41,7 @@ def touched(made: GearPairResult, side: int, phi1: np.ndarray, distance: complex
 
 
 @pytest.mark.parametrize("made", samples(), ids=NAMES)
-@pytest.mark.parametrize("side", [DRIVE, COAST])
+@pytest.mark.parametrize("side", few([DRIVE, COAST]))
 @pytest.mark.parametrize("more", few([0.1, 0.0, -0.1], 3))
 def test_first_touch_is_that_of_dense_points(made: GearPairResult, side: int, more: float) -> None:
     phases = np.linspace(0.1, 6.2, 23)
@@ -133,7 +133,7 @@ JUMP: dict[str, Any] = {
 """Flanks that touch across a knot where the curvature jumps by half."""
 
 
-@pytest.mark.parametrize("side", [DRIVE, COAST])
+@pytest.mark.parametrize("side", few([DRIVE, COAST]))
 def test_flanks_touch_across_a_jump_of_the_curvature(side: int) -> None:
     """Newton's steps went to and fro there; and of two places the one that comes first is told."""
     made = gearcam.build(gearcam.design(JUMP))

@@ -155,7 +155,7 @@ WRONG: dict[str, tuple[Callable[[np.ndarray], np.ndarray], str]] = {
 }
 
 
-@pytest.mark.parametrize("fault", chosen(list(WRONG), *list(WRONG)[:6], "mirrored"))
+@pytest.mark.parametrize("fault", chosen(list(WRONG), *list(WRONG)[:6], "symmetric"))
 @pytest.mark.parametrize("chord", few([3e-3, 1e-3]))
 def test_a_wrong_outline_is_refused_with_its_cause(fault: str, chord: float) -> None:
     """However far apart its points are: a wheel that is symmetric is not called mirrored."""

@@ -182,6 +182,7 @@ def test_a_tooth_moved_by_5_um_is_found_in_3d(tmp_path: Path) -> None:
     assert sides[1] != set()
 
 
+@pytest.mark.slow
 def test_the_report_shows_the_patch_over_the_width() -> None:
     design = gc.load("profiles/ellipse.toml").with_(SOLID | {"output.studies": ["mesh"]})
     assert isinstance(design, GearPairDesign)

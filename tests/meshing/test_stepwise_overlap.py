@@ -76,7 +76,7 @@ def test_all_overlap_is_that_of_the_whole_outlines(name: str, shift: float, coun
         assert areas == pytest.approx(expected, rel=1e-9, abs=1e-12 * module**2)
 
 
-@pytest.mark.parametrize("name", OVERLAPPING)
+@pytest.mark.parametrize("name", few(OVERLAPPING))
 @pytest.mark.parametrize(
     ("shift", "lead"),
     few([(0.0, 0.0), (0.1, 0.3), (-0.5, 0.4), (0.0, -1.5), (-0.4, 0.02), (-0.3, 0.0)]),

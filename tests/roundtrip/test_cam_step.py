@@ -273,6 +273,7 @@ def test_ramps_begin_and_end_with_rises() -> None:
         assert [k for k, row in enumerate(ends) if np.ptp(row, axis=0).max() < 1e-9] == sectors
 
 
+@pytest.mark.slow
 def test_another_volume_is_refused() -> None:
     made = named("rib")
     with pytest.raises(SolidError, match=r"the solid's volume is .* mm3 off"):

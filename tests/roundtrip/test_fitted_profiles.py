@@ -23,7 +23,6 @@ LAWS = [
 QUICK = [
     ("modified-trapezoid", "arcs"),
     ("cycloidal", "splines"),
-    ("3-4-5-6", "lines"),
 ]
 
 ARM, GROOVE = (

@@ -294,6 +294,7 @@ def test_a_text_loads_nothing_that_functions_need() -> None:
     assert done.stdout.split() == ["True", "False"]
 
 
+@pytest.mark.slow
 def test_remedies_keep_the_function() -> None:
     design = pair(Formula(phi2=swing), teeth=(18, 18))
     found: Any = gearcam.remedies(gc.build(design)).found

@@ -176,7 +176,7 @@ def test_of_a_sector_in_two_pieces_the_larger_is_taken(angle: float) -> None:
     assert hole.shape.diameter == pytest.approx(45.0 - 13.0, abs=0.02)
 
 
-@pytest.mark.parametrize("core", [10.0, 40.0])
+@pytest.mark.parametrize("core", few([10.0, 40.0]))
 def test_a_thin_rim_leaves_the_web_whole(core: float) -> None:
     """A web is kept as exactly as the rim, also where the bore is large."""
     sizes = blank(bore_diameter=2 * core, lightening_holes=4, rim=0.2, web=2.0)
@@ -197,7 +197,7 @@ def test_rim_and_web_have_their_defaults() -> None:
     assert hole.shape.moments.area == pytest.approx(math.pi * 17**2, abs=1.0)
 
 
-@pytest.mark.parametrize("wheel", [1, 2])
+@pytest.mark.parametrize("wheel", few([1, 2]))
 @pytest.mark.parametrize("travel", few([0.4, 2.0, 5.0]))
 def test_the_pin_stays_in_its_slot_all_the_way(wheel: int, travel: float) -> None:
     """The housing's pin stands on the line of centres: wheel 1 turns by -phi1, wheel 2 by +phi2.

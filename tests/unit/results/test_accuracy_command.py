@@ -15,7 +15,7 @@ import pytest
 import gearcam
 from gearcam.base.errors import DesignError, GearcamError
 from gearcam.cli import main
-from gearcam.kinds.cam import studies as room
+from gearcam.kinds.cam import ladders as room
 from gearcam.results.accuracy import accuracy, stages_of
 from gearcam.results.ladders import Ladder
 

@@ -128,7 +128,7 @@ def test_the_next_smaller_change_does_not_do(name: str, folder: Path) -> None:
 
 @pytest.mark.parametrize(
     "name",
-    few(["play", "undercut cam", "follower's offset", "hub", "shallow", "pointed rack", "arm"]),
+    few(["play", "undercut cam", "follower's offset", "hub", "shallow", "pointed rack", "arm"], 4),
 )
 def test_remedies_are_short_and_nearly_the_least(name: str, folder: Path) -> None:
     found = search(name, folder).found
@@ -166,7 +166,7 @@ def told_teeth(message: str) -> list[int]:
     return [int(count) for count in found.groups()]
 
 
-@pytest.mark.parametrize("name", few(WARNED, 4))
+@pytest.mark.parametrize("name", few(WARNED, 6))
 def test_tooth_counts_of_warnings_keep_the_lobes_and_are_true(name: str, folder: Path) -> None:
     document, code = WARNED[name]
     told = [found for found in job_of(document, folder).findings if found.code == code]
@@ -219,6 +219,7 @@ def test_a_search_that_takes_too_long_is_given_up_and_says_so(folder: Path) -> N
     assert [*remedy_lines(found)] == ["the search for a remedy was ended after 0 designs"]
 
 
+@pytest.mark.slow
 def test_a_slow_machine_finds_the_same(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     made = fresh(job_of(DESIGNS["short teeth"][0], folder))
     found = gearcam.remedies(made)

@@ -272,6 +272,7 @@ def test_a_change_that_leaves_errors_is_not_listed_as_tried_in_vain(tmp_path: Pa
     assert "tool_radius" not in lines[1]
 
 
+@pytest.mark.slow
 def test_a_bore_that_a_cam_cannot_take_leaves_its_wall(tmp_path: Path) -> None:
     """A concentric circle of 2*(40 - 6) mm is nearest; 3 mm of wall on both sides."""
     made = cam(ROLLER, {"prime_radius_mm": 40}, blank={"bore_diameter_mm": 90})

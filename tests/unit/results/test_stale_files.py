@@ -220,6 +220,7 @@ def test_a_check_names_the_files_of_another_state(
     assert "outdated" not in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_a_study_is_new_and_the_build_stale_and_later_the_study_too(tmp_path: Path) -> None:
     desk = Desk(tmp_path, PAIR)
     first = desk.run("build", "--only", "csv")["hash"]

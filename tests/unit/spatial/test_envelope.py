@@ -12,6 +12,7 @@ from gearcam.numeric.roots import bracketed_root
 from gearcam.spatial.cam import SpatialCam
 from gearcam.spatial.envelope import Roller, touched
 from gearcam.spatial.guides import RollerGuide, Straight, SwingArm, Turret, carried
+from helpers_sampling import few
 from helpers_spatial import SPANS, program, reference, swinging
 from witness.roller_in_space import Mechanism, cycloidal
 
@@ -73,12 +74,14 @@ ARM = [
 
 @pytest.mark.parametrize(
     ("cam", "values"),
-    [
-        (reference(), STRAIGHT),
-        (reference(math.radians(10.0)), CONE),
-        (reference(math.atan(0.2)), APEX),
-        (swinging(), ARM),
-    ],
+    few(
+        [
+            (reference(), STRAIGHT),
+            (reference(math.radians(10.0)), CONE),
+            (reference(math.atan(0.2)), APEX),
+            (swinging(), ARM),
+        ]
+    ),
     ids=["cylinder", "cone", "cone with its tip on the axis", "arm"],
 )
 def test_walls_are_where_a_search_finds_them(

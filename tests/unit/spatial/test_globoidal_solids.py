@@ -112,6 +112,7 @@ def test_there_is_no_gap(steps: int, around: tuple[float, tuple[int, ...]]) -> N
         assert (found.volume() > 2e-4) == (side in sides)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("angle", chosen(ANGLES, 60.13))
 def test_a_clearance_is_half_to_each_side(angle: float) -> None:
     cam = indexer(clearance=PLAY)

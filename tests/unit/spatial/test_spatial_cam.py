@@ -37,11 +37,14 @@ def test_the_pressure_angle_is_worst_at_the_inner_end() -> None:
 
 @pytest.mark.parametrize(
     ("x", "in_space", "in_plane"),
-    [
-        (28.0, 21.5502758410191, 22.774033472),
-        (34.0, 29.9643605376437, 31.956334046),
-        (40.0, 39.7178824227032, 42.689588146),
-    ],
+    few(
+        [
+            (28.0, 21.5502758410191, 22.774033472),
+            (34.0, 29.9643605376437, 31.956334046),
+            (40.0, 39.7178824227032, 42.689588146),
+        ],
+        3,
+    ),
 )
 def test_the_largest_roller_is_smaller_than_the_developed_plane_allows(
     x: float, in_space: float, in_plane: float

@@ -12,6 +12,7 @@ import pytest
 import gearcam as gc
 from gearcam.base.errors import DesignError, InfeasibleError
 from helpers_pairs import PROFILES
+from helpers_sampling import few
 
 DESIGN = gc.load(PROFILES / "cylinder_cam.toml").with_({"output.files": ["csv"]})
 SWINGING = DESIGN.with_(
@@ -200,13 +201,15 @@ def test_a_misspelt_form_is_judged_as_what_was_meant() -> None:
 
 @pytest.mark.parametrize(
     ("changes", "places"),
-    [
-        ({}, []),
-        ({"cam.roller_clearance_mm": 0}, ["between the walls"]),
-        ({"cam.roller_clearance_mm": 0, "cam.walls": "lower"}, []),
-        ({"cam.floor_clearance_mm": 0}, ["at the floor"]),
-        ({"cam.floor_clearance_mm": 0, "follower.roller_length_mm": 11}, []),
-    ],
+    few(
+        [
+            ({}, []),
+            ({"cam.roller_clearance_mm": 0}, ["between the walls"]),
+            ({"cam.roller_clearance_mm": 0, "cam.walls": "lower"}, []),
+            ({"cam.floor_clearance_mm": 0}, ["at the floor"]),
+            ({"cam.floor_clearance_mm": 0, "follower.roller_length_mm": 11}, []),
+        ]
+    ),
 )
 def test_a_roller_without_clearance_is_noted(changes: dict[str, Any], places: list[str]) -> None:
     found = gc.build(DESIGN.with_(changes)).findings

@@ -281,6 +281,7 @@ STEEP_CAMS = {  # steep rises, far too large rollers: places near the outside le
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", chosen(list(STEEP_CAMS), "one wall"))
 def test_a_roller_that_is_far_too_large_is_told_in_finite_numbers(
     tmp_path: Path, name: str

@@ -21,7 +21,7 @@ from gearcam.kinds.cam.result import pressure_column, rho_column
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.numeric.pose import Pose
-from gearcam.parts.blank import KIND as PARTS_KIND
+from gearcam.parts.checks import KIND as PARTS_KIND
 from gearcam.pictures.charts import Chart, Charts, Limit, Line
 from gearcam.pictures.drawings import (
     CENTER,

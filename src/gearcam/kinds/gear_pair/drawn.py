@@ -72,12 +72,11 @@ def _chart(
 
 def _position(result: GearPairResult) -> Chart:
     table = result.motion(result.phases)
-    phi1 = table["phi1_deg"]
+    driven, y, column = "driven wheel", "driven angle phi2, deg", "phi2_deg"
     if result.pair.on_rack:
-        line = {"rack": table["travel_mm"]}
-        return _chart(result, "Position of the rack", "travel, mm", phi1, line)
-    line = {"driven wheel": table["phi2_deg"]}
-    return _chart(result, "Position of the driven wheel", "driven angle phi2, deg", phi1, line)
+        driven, y, column = "rack", "travel, mm", "travel_mm"
+    lines = {driven: table[column]}
+    return _chart(result, f"Position of the {driven}", y, table["phi1_deg"], lines)
 
 
 def _ratio(result: GearPairResult) -> Chart:

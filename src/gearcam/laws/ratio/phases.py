@@ -36,24 +36,24 @@ from gearcam.laws.ratio.span import NO_DWELL, SAME, Lobes, Span, open_travel, ow
 from gearcam.numeric.jets import Jet, Value, cos, polynomial, primitive, sin
 from gearcam.numeric.piecewise import Piece
 
-Shape = Callable[[Jet], Jet]
-"""A function on the unit interval."""
+Curve = Callable[[Jet, Value, Value, Value, Value], Jet]
+"""A function of phi1, with the ratios at both ends, the angle at the start and the width."""
 
 
 @dataclass(frozen=True)
 class Arc(ShortRepr):
-    """Arcs of one shape, which rises from 0 to 1 over the unit interval.
+    """A shape of arcs.
 
     Parameters
     ----------
-    shape, integral : callable
-        The shape, and its integral with any constant.
+    ratio, integral : callable
+        The ratio, and its integral with any constant.
     share : float
-        Mean of the shape: weight of the end value in the mean of an arc.
+        Weight of the end value in the mean of the arc.
     """
 
-    shape: Shape
-    integral: Shape
+    ratio: Curve
+    integral: Curve
     share: float = 0.5
 
     def piece(self, start: float, end: float, low: float, width: float) -> Piece:
@@ -70,36 +70,49 @@ class Arc(ShortRepr):
         -------
         Piece
         """
-        return Piece(self._ratio, self._driven, (start, end, low, width))
+        return Piece(self.ratio, self.integral, (start, end, low, width))
 
-    def _ratio(self, x: Jet, start: Value, end: Value, low: Value, width: Value) -> Jet:
-        return (end - start) * self.shape((x - low) / width) + start
 
-    def _driven(self, x: Jet, start: Value, end: Value, low: Value, width: Value) -> Jet:
+def _cosine(x: Jet, start: Value, end: Value, low: Value, width: Value) -> Jet:
+    """003 eqs. (2.1), (2.17) with Tables 2.2, 2.4."""
+    return 0.5 * (start - end) * cos(math.pi / width * (x - low)) + 0.5 * (start + end)
+
+
+def _cosine_integral(x: Jet, start: Value, end: Value, low: Value, width: Value) -> Jet:
+    half, speed = 0.5 * (start - end), math.pi / width
+    return 0.5 * (start + end) * x + (half / speed) * sin(speed * (x - low))
+
+
+def _sine(x: Jet, start: Value, end: Value, low: Value, width: Value) -> Jet:
+    """Return a quarter of a sine, 003 eqs. (3.1), (3.10), (3.11), with a slope at the start."""
+    return (end - start) * sin(0.5 * math.pi / width * (x - low)) + start
+
+
+def _sine_integral(x: Jet, start: Value, end: Value, low: Value, width: Value) -> Jet:
+    speed = 0.5 * math.pi / width
+    return start * x - ((end - start) / speed) * cos(speed * (x - low))
+
+
+def _rising(*powers: float) -> Arc:
+    """Return arcs shaped as a polynomial that rises from 0 to 1 over the unit interval."""
+
+    def ratio(x: Jet, start: Value, end: Value, low: Value, width: Value) -> Jet:
+        return (end - start) * polynomial((x - low) / width, 0.0, *powers) + start
+
+    def integral(x: Jet, start: Value, end: Value, low: Value, width: Value) -> Jet:
         t = (x - low) / width
-        return width * (start * t + (end - start) * self.integral(t))
+        return width * (start * t + (end - start) * primitive(t, 0.0, *powers))
 
-
-def _polynomial_arc(*powers: float) -> Arc:
-    return Arc(lambda t: polynomial(t, 0.0, *powers), lambda t: primitive(t, 0.0, *powers))
+    return Arc(ratio, integral)
 
 
 ARCS: Final[dict[str, Arc]] = {
-    # 003 eqs. (2.1), (2.17) with Tables 2.2, 2.4
-    "cosine": Arc(
-        lambda t: 0.5 - 0.5 * cos(math.pi * t),
-        lambda t: 0.5 * t - (0.5 / math.pi) * sin(math.pi * t),
-    ),
+    "cosine": Arc(_cosine, _cosine_integral),
     # 003 eq. (2.13) with Table 2.3, written on the unit interval
-    "cubic": _polynomial_arc(0.0, 0.0, 3.0, -2.0),
+    "cubic": _rising(0.0, 0.0, 3.0, -2.0),
     # also the second derivative of the ratio is zero at both ends
-    "quintic": _polynomial_arc(0.0, 0.0, 0.0, 10.0, -15.0, 6.0),
-    # a quarter of it, 003 eqs. (3.1), (3.10), (3.11), with a slope at the start
-    "sine": Arc(
-        lambda t: sin(0.5 * math.pi * t),
-        lambda t: (-2.0 / math.pi) * cos(0.5 * math.pi * t),
-        share=2.0 / math.pi,
-    ),
+    "quintic": _rising(0.0, 0.0, 0.0, 10.0, -15.0, 6.0),
+    "sine": Arc(_sine, _sine_integral, share=2.0 / math.pi),
 }
 """Shapes by their names in design files."""
 

@@ -102,6 +102,7 @@ def test_a_second_roller_without_a_place_is_refused_with_one(
         _ = gearcam.build(design.with_({key: outside})).cam
 
 
+@pytest.mark.slow
 def test_a_remedy_is_found_and_works() -> None:
     design, _ = refusal(("= 38 ", "= 14 "))
     found = gearcam.remedies(gearcam.build(design), patience=20.0).found

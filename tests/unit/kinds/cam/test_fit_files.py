@@ -16,6 +16,7 @@ from gearcam.designs.writing import least_document, toml_text
 from gearcam.kinds.cam.design import CamDesign
 from helpers_files import table
 from helpers_pairs import PROFILES
+from helpers_sampling import few
 
 ANGLES = np.arange(0.0, 360.0, 2.0)
 PLATE = PROFILES / "plate_cam_offset_roller.toml"
@@ -44,7 +45,7 @@ def loaded(text: str) -> CamDesign:
     return design
 
 
-@pytest.mark.parametrize("head", ["theta_deg,lift_mm", "angle_deg,lift_mm"])
+@pytest.mark.parametrize("head", few(["theta_deg,lift_mm", "angle_deg,lift_mm"]))
 def test_a_lift_becomes_a_design_that_builds(head: str, tmp_path: Path) -> None:
     file = written(tmp_path / "lift.csv", double_dwell(8.0), head)
     output = tmp_path / "output"
@@ -195,7 +196,7 @@ def test_a_lift_without_fit_is_no_profile(tmp_path: Path) -> None:
         gearcam.build(gearcam.load(PLATE)).follow(file)
 
 
-@pytest.mark.parametrize("digits", [8, 2])
+@pytest.mark.parametrize("digits", few([8, 2]))
 def test_rows_without_scatter_have_the_noise_of_their_digits(digits: int, tmp_path: Path) -> None:
     lift = double_dwell(8.0, noise=0.0)
     rows = [f"{a:g},{s:.{digits}f}" for a, s in zip(ANGLES, lift, strict=True)]

@@ -13,13 +13,14 @@ from gearcam.kinds.cam.result import CamResult
 from helpers_built import built
 from helpers_files import table
 from helpers_pairs import PROFILES
+from helpers_sampling import few
 
 
 def made(name: str) -> CamResult:
     return built(PROFILES / f"{name}.toml")
 
 
-@pytest.mark.parametrize("file", ["profile.csv", "cam.dxf"])
+@pytest.mark.parametrize("file", few(["profile.csv", "cam.dxf"]))
 @pytest.mark.parametrize(
     ("name", "highest", "unit"),
     [("plate_cam_offset_roller", 10.0, "mm"), ("plate_cam_oscillating", 20.0, "deg")],

@@ -18,6 +18,7 @@ from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.cams.groove import GrooveCam
 from helpers_files import read, refused
 from helpers_pairs import PROFILES
+from helpers_sampling import few
 from helpers_step import read_step
 
 FILE = (PROFILES / "groove_cam.toml").read_text("utf-8")
@@ -47,7 +48,7 @@ def test_the_solid_is_the_disc_less_its_groove(side: str) -> None:
     assert sorted({round(z, 9) for z in mesh.vertices[:, 2]}) == [0.0, floor, 20.0]
 
 
-@pytest.mark.parametrize("radius2", [5.0, 7.0])
+@pytest.mark.parametrize("radius2", few([5.0, 7.0]))
 def test_the_groove_of_two_rollers_has_a_step(radius2: float) -> None:
     change = ("roller_radius_mm = 6", f"roller_radius_mm = 6\nroller2_radius_mm = {radius2}")
     result = gearcam.build(read(FILE, PLAIN, change))
@@ -77,7 +78,7 @@ def test_step_holds_the_groove(side: str) -> None:
     assert solid.center[2] == pytest.approx(height, abs=1e-5)
 
 
-@pytest.mark.parametrize("rotation", ["ccw", "cw"])
+@pytest.mark.parametrize("rotation", few(["ccw", "cw"]))
 def test_each_wall_carries_a_roller_as_wide_as_the_groove(rotation: str, tmp_path: Path) -> None:
     """From points and from the drawing; taken for the other wall it is told."""
     result = gearcam.build(FILE_DESIGN.with_({"cam.rotation": rotation}))

@@ -483,7 +483,7 @@ STEEP = [
 ]
 
 
-@pytest.mark.parametrize(("make", "cam", "goal"), STEEP)
+@pytest.mark.parametrize(("make", "cam", "goal"), few(STEEP))
 def test_a_search_passes_steep_starts(make: Any, cam: dict[str, Any], goal: dict[str, Any]) -> None:
     result = gc.build(gc.design(make("polynomial", cam=cam, goal=goal)))
     assert not result.findings
@@ -500,6 +500,7 @@ def test_a_goal_that_only_the_default_range_limits_is_refused_with_a_range_that_
     assert not gc.build(gc.design(document)).findings
 
 
+@pytest.mark.slow
 def test_a_refused_solution_is_told_without_other_remedies(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -706,7 +707,7 @@ def test_a_finding_about_contact_pressure_names_the_cam_that_keeps_it() -> None:
         assert len(gc.build(other).study("forces").findings) == left
 
 
-@pytest.mark.parametrize("kind", ["rise", "return"])
+@pytest.mark.parametrize("kind", few(["rise", "return"]))
 def test_the_pressure_angle_of_rises_or_returns_is_a_goal(kind: str) -> None:
     goal = {"minimize": f"cam.pressure_angle_deg.{kind}_max"}
     document = stem("cycloidal", goal=goal, bounds={"prime_radius_mm": [30, 45]})

@@ -102,6 +102,7 @@ def contact_on_circles(z1: int, z2: int, addendum: float) -> float:
 STUB = 0.8
 
 
+@pytest.mark.slow
 def test_fewer_teeth_do_with_a_shorter_addendum() -> None:
     """The fewest stub teeth whose tips pass where flanks still touch for 1.1 pitches."""
     given = (16, 18)
