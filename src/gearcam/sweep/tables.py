@@ -11,6 +11,7 @@ import csv
 import importlib.util
 import json
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import islice
 from pathlib import Path
 from typing import Any, Final
 
@@ -100,38 +101,17 @@ def write_parquet(path: Path, table: Iterable[dict[str, Any]], texts: frozenset[
     import pyarrow as pa
     import pyarrow.parquet as pq
 
-    writer: Any = None
-    batch: list[dict[str, Any]] = []
-
-    def write() -> None:
-        nonlocal writer
-        names = list(batch[0])
-        schema = pa.schema(
-            [(name, pa.string() if name in texts else _whole(name, pa)) for name in names]
-        )
-        if writer is None:
-            writer = pq.ParquetWriter(path, schema)
-        columns = {
-            name: [_as(record[name], text=name in texts) for record in batch] for name in names
-        }
-        writer.write_table(pa.table(columns, schema=schema))
-        batch.clear()
-
+    rows, writer = iter(table), None
     try:
-        for record in table:
-            batch.append(record)
-            if len(batch) == _BATCH:
-                write()
-        if batch:
-            write()
+        while batch := list(islice(rows, _BATCH)):
+            if writer is None:
+                kinds = dict.fromkeys(batch[0], pa.float64()) | dict.fromkeys(texts, pa.string())
+                kinds |= dict.fromkeys(("number", "errors"), pa.int64())
+                schema = pa.schema([(name, kinds[name]) for name in batch[0]])
+                writer = pq.ParquetWriter(path, schema)
+            for record in batch:
+                record |= {name: str(record[name]) for name in texts if record[name] is not None}
+            writer.write_table(pa.Table.from_pylist(batch, schema=writer.schema))
     finally:
         if writer is not None:
             writer.close()
-
-
-def _whole(name: str, pa: Any) -> Any:
-    return pa.int64() if name in ("number", "errors") else pa.float64()
-
-
-def _as(value: Any, *, text: bool) -> Any:
-    return None if value is None else str(value) if text else value
