@@ -18,12 +18,12 @@ import gearcam
 from gearcam.designs.design import Design
 from gearcam.sweep.axes import axes_of
 from gearcam.sweep.cluster import Cluster
-from gearcam.sweep.engine import Engine
+from gearcam.sweep.engine import Engine, run
 from gearcam.sweep.log import Log
 from gearcam.sweep.plan import Plan
 from gearcam.sweep.pool import Processes
 from gearcam.sweep.rows import Built, measured
-from gearcam.sweep.run import head_of, run, write_tables
+from gearcam.sweep.tables import write_tables
 from measuring import ROOT, Result, Timing, show, table
 
 PAIR = ROOT / "profiles" / "ellipse.toml"
@@ -128,7 +128,7 @@ def _pairs(own: float) -> Result:
         if done in (total // 2, total):
             marks.append(_Mark(done, time.perf_counter() - start, watched.own, watched.child))
 
-    with tempfile.TemporaryDirectory() as folder, Log(folder, head_of(plan)) as log:
+    with tempfile.TemporaryDirectory() as folder, Log(folder, plan.head) as log:
         with _watched() as watched:
             run(plan, log, Processes(jobs=2), progress)
         begin = time.perf_counter()
@@ -248,7 +248,7 @@ def _plan(count: int) -> Plan:
 def _timed(engine: Engine, count: int) -> float:
     """Return the time of a run with its log, s."""
     plan = _plan(count)
-    with tempfile.TemporaryDirectory() as folder, Log(folder, head_of(plan)) as log:
+    with tempfile.TemporaryDirectory() as folder, Log(folder, plan.head) as log:
         start = time.perf_counter()
         run(plan, log, engine)
         return time.perf_counter() - start

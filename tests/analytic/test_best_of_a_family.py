@@ -29,7 +29,6 @@ from gearcam.sweep.methods import Quest, Spent, minimized, usual
 from gearcam.sweep.optimum import Trials
 from gearcam.sweep.plan import Plan
 from gearcam.sweep.rows import Built, measured
-from gearcam.sweep.run import head_of
 
 
 @dataclass
@@ -77,7 +76,7 @@ class Family:
         base: Any = gc.loads(self.text).with_(given | {"goal.findings": "warning"})
         plan = Plan(base=base, axes=axes_of(self.sought), sampling="random", samples=trials)
         search = Quest(plan.axes, len(self.goals), trials, seed=1)
-        with Log(folder, head_of(plan)) as log:
+        with Log(folder, plan.head) as log:
             found = Trials(
                 plan=plan,
                 signs=base.goal.signs,

@@ -9,10 +9,10 @@ come; a sweep that was ended goes on from its log.
 `axes`       what is written for a key: values, a range, a distribution
 `plan`       which variants there are: a grid or samples
 `rows`       one variant built and measured
+`engine`     what is missing in the log, built by an engine
 `pool`       the engine of this machine: processes, each with limits of time and memory
 `cluster`    the engine of dask.distributed
 `log`        the rows that are there
-`run`        what is missing in the log, built by an engine
 `tables`     ``sweep.csv`` and Parquet
 `page`       ``sweep.html``
 `methods`    where an optimizer looks next

@@ -16,11 +16,11 @@ from gearcam.console import complain, progress_bar, say
 from gearcam.designs.design import Design, load
 from gearcam.designs.sweep_tables import family_of
 from gearcam.sweep.axes import FORM, Varied, axes_of, settings_of
-from gearcam.sweep.engine import MEMORY, SECONDS, Engine
+from gearcam.sweep.engine import MEMORY, SECONDS, Engine, run
 from gearcam.sweep.log import Log
 from gearcam.sweep.plan import MANY, Plan, flattened
 from gearcam.sweep.pool import Processes, default_jobs
-from gearcam.sweep.run import Tally, head_of, run, write_tables, written_whole
+from gearcam.sweep.tables import Tally, write_tables, written_whole
 
 _TITLE: Final = "sweep"
 _SETTINGS: Final = ("random", "latin", "seed")
@@ -90,7 +90,7 @@ def _sweep(options: Options) -> int:
         raise DesignError([Problem(message, allowed=f"at most {MANY}, or --yes")])
     engine, folder = engine_of(options), Path(options["output"])
     stopped = False
-    with Log(folder, head_of(plan)) as log:
+    with Log(folder, plan.head) as log:
         there = len(log)
         more = f", {there} are there" if there else ""
         say(f"{options['file']}: {plan.count} variants{more}; {engine.name}")

@@ -1,4 +1,4 @@
-"""What builds the variants of a sweep: the interface of engines."""
+"""What builds the variants of a sweep: the interface of engines, and what they do with a log."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from typing import Any, Final
 
 from gearcam.base.display import ShortRepr
 from gearcam.designs.design import Design
+from gearcam.sweep.log import Log
+from gearcam.sweep.plan import Plan
 from gearcam.sweep.rows import Built
 
 Job = tuple[int, dict[str, Any]]
@@ -49,3 +51,31 @@ class Engine(ABC, ShortRepr):
         """Yield the rows of one lot of variants (see `session`)."""
         with self.session(base) as build:
             yield from build(jobs)
+
+
+def run(
+    plan: Plan, log: Log, engine: Engine, progress: Callable[[int, int], Any] | None = None
+) -> None:
+    """Build what is missing in a log.
+
+    Parameters
+    ----------
+    plan : Plan
+        The variants.
+    log : Log
+        Of this sweep.
+    engine : Engine
+        What builds them.
+    progress : callable, optional
+        Called with the number of rows that are there and their total.
+    """
+
+    def missing() -> Iterator[Job]:
+        for number in range(plan.count):
+            if number not in log:
+                yield number, plan.values(number)
+
+    for row in engine.run(plan.base, missing()):
+        log.append(row)
+        if progress is not None:
+            progress(len(log), plan.count)

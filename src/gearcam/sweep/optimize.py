@@ -29,7 +29,7 @@ from gearcam.sweep.methods import Quest, Spent, minimized, usual
 from gearcam.sweep.optimum import FRONT, Trials
 from gearcam.sweep.plan import Plan
 from gearcam.sweep.rows import Built, measured
-from gearcam.sweep.run import head_of, write_tables, written_whole
+from gearcam.sweep.tables import write_tables, written_whole
 
 LOG: Final = "optimize.log"
 _STEM: Final = "optimize"
@@ -81,7 +81,7 @@ def _optimize(options: Options, file: str) -> int:
         raise DesignError([Problem(message, key="goal.method", allowed=allowed)])
     engine, folder = engine_of(options), Path(options["output"])
     stopped = False
-    head = {**head_of(plan), "method": method, "goals": _goals(goal.signs)}
+    head = {**plan.head, "method": method, "goals": _goals(goal.signs)}
     with Log(folder, head, LOG) as log:
         more = f", {len(log)} are there" if len(log) else ""
         reason = f", since {why}" if why else ""

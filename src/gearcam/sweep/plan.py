@@ -145,6 +145,16 @@ class Plan(ShortRepr):
             return latin_hypercube(self.samples, len(self.axes), self.seed)
         return np.random.default_rng(self.seed).random((self.samples, len(self.axes)))
 
+    @property
+    def head(self) -> dict[str, Any]:
+        """The first line of its log."""
+        return {
+            "sweep": self.mark,
+            "file": self.base.source,
+            "variants": self.count,
+            "varied": [f"{axis.key}={axis.text}" for axis in self.axes],
+        }
+
     @cached_property
     def mark(self) -> str:
         """What tells this sweep from others: a hash of design and variants."""

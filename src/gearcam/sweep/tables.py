@@ -10,29 +10,127 @@ from __future__ import annotations
 import csv
 import importlib.util
 import json
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
 from typing import Any, Final
 
+from gearcam.base.display import ShortRepr
+from gearcam.base.errors import WriteError
+from gearcam.sweep.log import Log
 from gearcam.sweep.rows import Built
 
 _BATCH: Final = 5000
 """Rows of Parquet that are in memory at once."""
 
 
-def records(
-    rows: Iterable[Built], keys: Sequence[str], facts: Sequence[str]
-) -> Iterator[dict[str, Any]]:
-    """Yield rows as dicts of columns.
+@dataclass
+class Tally(ShortRepr):
+    """What is known of the rows so far.
 
     Parameters
     ----------
-    rows : iterable of Built
-        The rows.
-    keys, facts : sequence of str
-        Columns of values and facts.
+    rows, refused, wrong, faults : int
+        Numbers of rows, of variants that cannot be made, of those with errors, and of refusals
+        that are faults of the program.
+    facts : dict of str to bool
+        Names of facts, and whether one of their values is a text.
+    texts : set of str
+        Keys with a value that is not a number.
     """
+
+    rows: int = 0
+    refused: int = 0
+    wrong: int = 0
+    faults: int = 0
+    facts: dict[str, bool] = field(default_factory=dict)
+    texts: set[str] = field(default_factory=set)
+
+    def add(self, row: Built) -> None:
+        """Count a row."""
+        self.rows += 1
+        self.refused += not row.made
+        self.wrong += row.errors > 0
+        self.faults += row.fault
+        for name, value in row.facts.items():
+            self.facts[name] = self.facts.get(name, False) or isinstance(value, str)
+        for key, value in row.values.items():
+            if isinstance(value, bool) or not isinstance(value, int | float):
+                self.texts.add(key)
+
+
+def write_tables(log: Log, folder: Path, stem: str = "sweep") -> tuple[Tally, list[Path]]:
+    """Write the rows of a log as tables.
+
+    Parameters
+    ----------
+    log : Log
+        With the rows.
+    folder : path
+        Where to write.
+    stem : str
+        Names of the files without their ends.
+
+    Returns
+    -------
+    tally : Tally
+        What the rows have.
+    files : list of path
+        What was written; nothing without rows.
+
+    Raises
+    ------
+    WriteError
+        If a file cannot be written.
+    """
+    tally = Tally()
+    for row in log.rows():
+        tally.add(row)
+    if not tally.rows:
+        return tally, []
+    first = next(log.rows())
+    keys, facts = list(first.values), list(tally.facts)
+    table, more = folder / f"{stem}.csv", folder / f"{stem}.parquet"
+    written_whole(table, lambda path: _write_csv(path, _records(log.rows(), keys, facts)))
+    if importlib.util.find_spec("pyarrow") is None:
+        return tally, [table]
+    texts = {name for name, text in tally.facts.items() if text} | tally.texts
+    texts |= {"findings", "refusal"}
+    written_whole(more, lambda path: _write_parquet(path, _records(log.rows(), keys, facts), texts))
+    return tally, [table, more]
+
+
+def written_whole(path: Path, write: Callable[[Path], Any]) -> None:
+    """Write a file whole or not at all.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+    write : callable
+        ``write(part)`` writes it to another place.
+
+    Raises
+    ------
+    WriteError
+        If it cannot be written.
+    """
+    part = path.with_suffix(f"{path.suffix}.part")
+    try:
+        try:
+            write(part)
+            part.replace(path)
+        finally:
+            part.unlink(missing_ok=True)
+    except OSError as error:
+        raise WriteError(f"{path}: {error.strerror or error}") from error
+
+
+def _records(
+    rows: Iterable[Built], keys: Sequence[str], facts: Sequence[str]
+) -> Iterator[dict[str, Any]]:
+    """Yield rows as values by columns; `keys` and `facts` are those of values and facts."""
     for row in rows:
         yield {
             "number": row.number,
@@ -52,21 +150,8 @@ def _cell(value: Any) -> float | str:
     return value
 
 
-def write_csv(path: Path, table: Iterable[dict[str, Any]]) -> None:
-    """Write rows as CSV.
-
-    Parameters
-    ----------
-    path : path
-        The file.
-    table : iterable of dict
-        The rows: values by the same columns; at least one.
-
-    Raises
-    ------
-    OSError
-        If it cannot be written.
-    """
+def _write_csv(path: Path, table: Iterable[dict[str, Any]]) -> None:
+    """Write values by columns, at least of one row, as CSV."""
     with path.open("w", encoding="utf-8", newline="") as file:
         writer: csv.DictWriter[str] | None = None
         for record in table:
@@ -76,28 +161,8 @@ def write_csv(path: Path, table: Iterable[dict[str, Any]]) -> None:
             writer.writerow(record)
 
 
-def can_write_parquet() -> bool:
-    """Return whether pyarrow is installed."""
-    return importlib.util.find_spec("pyarrow") is not None
-
-
-def write_parquet(path: Path, table: Iterable[dict[str, Any]], texts: frozenset[str]) -> None:
-    """Write rows as Parquet.
-
-    Parameters
-    ----------
-    path : path
-        The file.
-    table : iterable of dict
-        The rows, as for `write_csv`.
-    texts : frozenset of str
-        Columns that are texts; others are numbers.
-
-    Raises
-    ------
-    OSError
-        If it cannot be written.
-    """
+def _write_parquet(path: Path, table: Iterable[dict[str, Any]], texts: set[str]) -> None:
+    """Write values by columns as Parquet; `texts` are columns of texts, others of numbers."""
     import pyarrow as pa
     import pyarrow.parquet as pq
 

@@ -9,7 +9,7 @@ import pytest
 
 from gearcam.sweep.log import Log
 from gearcam.sweep.rows import Built
-from gearcam.sweep.run import Tally, write_tables
+from gearcam.sweep.tables import Tally, write_tables
 
 ROWS = [
     Built(
