@@ -50,10 +50,16 @@ _UNITS: Final = {unit: wanted for wanted in ("mm", "deg") for unit in like(wante
 
 _ENDING: Final = re.compile(f"(.+?)(?:_({'|'.join(_UNITS)})(?:_per_rad2?)?)?", re.DOTALL)
 
-_SPELLINGS: Final = {
-    "centre": "center", "tooth": "teeth", "z": "teeth", "m": "module", "dia": "diameter",
-    "diam": "diameter", "radii": "radius", "shaft": "bore", "shift": "x", "direction": "rotation",
-}  # fmt: skip
+_SPELLINGS: Final[Mapping[str, str]] = {
+    **dict.fromkeys(("centre",), "center"),
+    **dict.fromkeys(("tooth", "z"), "teeth"),
+    **dict.fromkeys(("m",), "module"),
+    **dict.fromkeys(("dia", "diam"), "diameter"),
+    **dict.fromkeys(("radii",), "radius"),
+    **dict.fromkeys(("shaft",), "bore"),
+    **dict.fromkeys(("shift",), "x"),
+    **dict.fromkeys(("direction",), "rotation"),
+}
 """Other spellings of words of keys, and other words for the same thing."""
 
 _NAMES: Final = {"thickness": "face_width"}
@@ -82,9 +88,8 @@ _SYNONYMS: Final[Mapping[str, tuple[str, ...]]] = {
 """Other words that people use: phases of a motion, forms of cams, followers, files."""
 
 _SLIDES: Final = {
-    "rrp": "rrt", "prr": "trr", "rpr": "rtr", "prp": "trt", "rpp": "rtt", "ppr": "ttr",
-    "rprr": "rtrr",
-}  # fmt: skip
+    name.replace("t", "p"): name for name in ("rrt", "trr", "rtr", "trt", "rtt", "ttr", "rtrr")
+}
 """Types of dyads with P for a joint that slides, as others write them."""
 
 _OF_CAMS = re.compile(r"(?<=.)[-_ ]?(cam|follower)s?$")
