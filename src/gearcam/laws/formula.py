@@ -25,8 +25,8 @@ Given = str | Functions
 """A formula, as text or as functions."""
 
 
-def formula_problems(name: str, given: Given, variable: str = VARIABLE) -> Iterator[Breach]:
-    """Yield the faults of the formula of a law, for its ``problems`` (see `parse`)."""
+def formula_problems(name: str, given: Given | None, variable: str = VARIABLE) -> Iterator[Breach]:
+    """Yield the faults of the formula of a law, if it is a text, for its ``problems``."""
     try:
         if isinstance(given, str):
             parse(given, variable)

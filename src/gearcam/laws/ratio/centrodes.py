@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Final, TypeVar
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import Adjustment, beyond_limit
@@ -38,6 +38,8 @@ from gearcam.numeric.piecewise import Piece
 from gearcam.numeric.roots import newton_in_bracket
 
 T = TypeVar("T", Array, Jet)
+
+_TO_AND_FRO: Final = "with a return the pair turns without end, with a travel to and fro"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -172,12 +174,7 @@ class LogSpiral(ShortRepr):
         "ratio goes a little beyond both",
     )
 
-    rules = (
-        exactly_one(
-            "return_angle", "driven_travel",
-            note="with a return the pair turns without end, with a travel to and fro",
-        ),
-    )  # fmt: skip
+    rules = (exactly_one("return_angle", "driven_travel", note=_TO_AND_FRO),)
 
     def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""

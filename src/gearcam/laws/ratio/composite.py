@@ -28,7 +28,15 @@ from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.formula import derivative
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
-from gearcam.laws.ratio.phases import ARCS, SMOOTH, arcs_law, knot_problems, one_lobe, open_span
+from gearcam.laws.ratio.phases import (
+    ARCS,
+    SMOOTH,
+    arcs_law,
+    knot_problems,
+    one_lobe,
+    open_span,
+    solved_places,
+)
 from gearcam.laws.ratio.span import NO_DWELL, SAME, Lobes, Span, angle_text, open_travel
 from gearcam.numeric.jets import Jet, harmonics, polynomial, primitive
 from gearcam.numeric.piecewise import Piece, piecewise
@@ -71,11 +79,7 @@ class Multispeed(ShortRepr):
             if 0.0 < angle < NARROWEST:
                 rule = f"0, or at least {formatted(NARROWEST_DEG)} deg"
                 yield "angles", index, "this phase is too short", rule
-        places: list[tuple[str, int | None]] = [
-            ("ratios", k) for k, value in enumerate(self.ratios) if value == "solve"
-        ]
-        places += [("driven_travel", None)] if self.driven_travel == "solve" else []
-        for place in places[1:2]:
+        for place in solved_places(self, "ratios", "driven_travel")[1:2]:
             yield *place, 'more than one "solve"', 'one "solve"'
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:

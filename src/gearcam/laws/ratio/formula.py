@@ -79,8 +79,7 @@ class Formula(ShortRepr):
     def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""
         for name in _NAMES:
-            if getattr(self, name) is not None:
-                yield from formula_problems(name, getattr(self, name))
+            yield from formula_problems(name, getattr(self, name))
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.
@@ -216,8 +215,7 @@ class RackLaw(ShortRepr):
     def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""
         for name in ("r1", "travel"):
-            if getattr(self, name) is not None:
-                yield from formula_problems(name, getattr(self, name))
+            yield from formula_problems(name, getattr(self, name))
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law to `tolerances`; the rack may have any number of teeth.

@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -155,32 +155,24 @@ class Phases(ShortRepr):
             yield "ratios", None, message, "one ratio for each knot"
             return
         yield from knot_problems(self.knots)
-        open_places: list[tuple[str, int | None]] = [
-            ("knots", k) for k, value in enumerate(self.knots) if value == "solve"
-        ]
-        open_places += [("ratios", k) for k, value in enumerate(self.ratios) if value == "solve"]
         if self.driven_travel is None:
             yield from self._closed_problems()
             return
-        open_places += [("driven_travel", None)] if self.driven_travel == "solve" else []
-        if len(open_places) > 1:
+        for place in solved_places(self, "knots", "ratios", "driven_travel")[1:2]:
             rule = 'one "solve" among knots, ratios and driven_travel_deg'
-            yield (*open_places[1], 'more than one "solve"', rule)
+            yield (*place, 'more than one "solve"', rule)
 
     def _closed_problems(self) -> Iterator[Breach]:
-        for index, value in enumerate(self.knots):
-            if value == "solve":
-                rule = (
-                    "an angle (a knot can be solved only for an open pair, with driven_travel_deg)"
-                )
-                yield "knots", index, "a knot of a closed pair cannot be solved", rule
+        rule = "an angle (a knot can be solved only for an open pair, with driven_travel_deg)"
+        for place in solved_places(self, "knots"):
+            yield (*place, "a knot of a closed pair cannot be solved", rule)
         first, last = self.ratios[0], self.ratios[-1]
         if first != last:
             given = last if first == "solve" else first
             message = "the last ratio differs from the first"
             yield "ratios", len(self.ratios) - 1, message, f"{given!r}"
-        if sum(value == "solve" for value in self.ratios[:-1]) > 1:
-            second = [k for k, value in enumerate(self.ratios) if value == "solve"][1]
+        solved = [k for k, value in enumerate(self.ratios[:-1]) if value == "solve"]
+        for second in solved[1:2]:
             message = 'more than one "solve"'
             yield "ratios", second, message, 'one "solve"; the knots of one lobe are enough'
 
@@ -205,6 +197,16 @@ class Phases(ShortRepr):
             knots = np.array(self.knots, dtype=float)
             span = open_span(arc, knots, self.ratios, lobes, travel, tolerances)
         return arcs_law(arc, knots, self.ratios, span, tolerances, solved)
+
+
+def solved_places(parameters: Any, *names: str) -> list[tuple[str, int | None]]:
+    """Return the fields `names` of a law's parameters, and places in them, that are "solve"."""
+    found: list[tuple[str, int | None]] = []
+    for name in names:
+        value = getattr(parameters, name)
+        row = enumerate(value) if isinstance(value, tuple) else [(None, value)]
+        found += [(name, place) for place, one in row if one == "solve"]
+    return found
 
 
 def open_span(

@@ -15,7 +15,7 @@ from gearcam.base.numerals import formatted
 from gearcam.base.quantities import NUMBER, TEXT, param
 from gearcam.base.rules import Breach, exactly_one, excludes, needs
 from gearcam.base.tolerances import Tolerances
-from gearcam.laws.entry import VARIABLE, Axis, LawEntry
+from gearcam.laws.entry import Axis, LawEntry
 from gearcam.laws.formula import Given, formula_problems, function_of, values_of
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.formula import axis_of, from_phi2
@@ -65,9 +65,8 @@ class MotionLaw(ShortRepr):
 
     def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""
-        for name, variable in (("y", "x"), ("slide", VARIABLE)):
-            if getattr(self, name) is not None:
-                yield from formula_problems(name, getattr(self, name), variable)
+        yield from formula_problems("y", self.y, "x")
+        yield from formula_problems("slide", self.slide)
         if self.x_from is not None and self.x_from == self.x_to:
             yield "x_to", None, "is x_from", "another x"
 
