@@ -62,6 +62,8 @@ _TOKEN = re.compile(
     r"|(?P<operator>\*\*|[-+*/])"
     r"|(?P<open>\()"
     r"|(?P<close>\))"
+    r"|(?P<other>.)",
+    re.DOTALL,
 )
 _HINTS: Final = {
     "^": "a power is written **",
@@ -247,24 +249,19 @@ def _check_words(text: str, variable: str) -> None:
 
 def _words(text: str, variable: str) -> Iterator[tuple[str, str, int]]:
     """Split the text: kind (value, function, operator, open, close), word, column from 1."""
-    position = 0
-    while position < len(text):
-        match = _TOKEN.match(text, position)
-        column = position + 1
-        if match is None:
-            sign = text[position]
-            name = repr(sign) if sign.isprintable() else f"U+{ord(sign):04X}"
-            what, hint = f"unexpected sign {name}", _HINTS.get(sign, "")
+    for match in _TOKEN.finditer(text):
+        kind, word, column = str(match.lastgroup), match.group(), match.start() + 1
+        if kind == "other":
+            name = repr(word) if word.isprintable() else f"U+{ord(word):04X}"
+            what, hint = f"unexpected sign {name}", _HINTS.get(word, "")
             raise FormulaError(what, column=column, allowed=_allowed(variable), hint=hint)
-        kind, word = str(match.lastgroup), match.group()
-        position = match.end()
         if kind == "name":
             _check_name(word, column, variable)
-            yield "function" if word in FUNCTIONS else "value", word, column
+            kind = "function" if word in FUNCTIONS else "value"
         elif kind == "number":
             _check_number(word, column)
-            yield "value", word, column
-        elif kind != "space":
+            kind = "value"
+        if kind != "space":
             yield kind, word, column
 
 

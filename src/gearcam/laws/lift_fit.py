@@ -163,15 +163,15 @@ class FittedLift:
         widths, dwells = model.gaps
         dwells = dwells.copy()
         dwells[first - 1] -= before
-        found: list[Phase] = list(_dwell(before))
+        phases: list[Phase] = list(_dwell(before))
         for k in (*range(first, count), *range(first)):
             rise = self.scale * float(model.after[k] - model.levels[k])
             last = (k + 1) % count == first
             make = ReturnPhase if rise < 0.0 else RisePhase
             lift = None if last else float(f"{abs(rise):.12g}") / self.scale
-            found.append(make(angle=_angle(widths[k]), law=model.laws[k], lift=lift))
-            found += _dwell(float(dwells[k]))
-        return (*found[:-1], replace(found[-1], angle="rest"))
+            phases.append(make(angle=_angle(widths[k]), law=model.laws[k], lift=lift))
+            phases += _dwell(float(dwells[k]))
+        return (*phases[:-1], replace(phases[-1], angle="rest"))
 
 
 def _dwell(width: float) -> Iterator[Phase]:
@@ -337,14 +337,14 @@ Choice = tuple[Any, bool]
 @cache
 def _choices() -> tuple[Choice, ...]:
     """Return the laws without numbers to choose, and those with one: at its default, then free."""
-    found = []
+    choices = []
     for entry in MOTION_LAWS.values():
         law, known = entry.parameters, fields(entry.parameters)
         if not known:
-            found.append((law(), False))
+            choices.append((law(), False))
         elif len(known) == 1 and isinstance(known[0].default, float):
-            found += [(law(), False), (law(), True)]
-    return tuple(found)
+            choices += [(law(), False), (law(), True)]
+    return tuple(choices)
 
 
 @dataclass(frozen=True, eq=False)
@@ -380,21 +380,21 @@ class _Trials:
         """
         plain = [one for one in _choices() if not one[1]]
         count = len(self.start.laws)
-        found = self.swept(min(((one,) * count for one in plain), key=self.cost), plain)
-        for k, tied in enumerate(self.models[found].tied):
+        laws = self.swept(min(((one,) * count for one in plain), key=self.cost), plain)
+        for k, tied in enumerate(self.models[laws].tied):
             if tied:
-                found = min(self.in_pairs(found, k, plain), key=self.cost)
-        return self.models[self.swept(found, _choices())]
+                laws = min(self.in_pairs(laws, k, plain), key=self.cost)
+        return self.models[self.swept(laws, _choices())]
 
-    def swept(self, found: tuple[Choice, ...], choices: Iterable[Choice]) -> tuple[Choice, ...]:
+    def swept(self, laws: tuple[Choice, ...], choices: Iterable[Choice]) -> tuple[Choice, ...]:
         """Return the best laws, tried move by move."""
         for _ in range(_SWEEPS):
-            before = found
-            for k in range(len(found)):
-                found = min((_changed(found, {k: one}) for one in choices), key=self.cost)
-            if found == before:
+            before = laws
+            for k in range(len(laws)):
+                laws = min((_changed(laws, {k: one}) for one in choices), key=self.cost)
+            if laws == before:
                 break
-        return found
+        return laws
 
     def in_pairs(
         self, found: tuple[Choice, ...], k: int, choices: Iterable[Choice]

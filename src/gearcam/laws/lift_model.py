@@ -169,18 +169,18 @@ class LiftModel:
         """What is fitted, and which starts, ends, levels and numbers change with it."""
         count = len(self.laws)
         moves = range(count)
-        found: dict[Name, list[Name]] = {}
+        changed: dict[Name, list[Name]] = {}
         for k in moves:
             if not self.tied[k - 1]:
-                found["start", k] = [("start", k)]
-            found["end", k] = [("end", k)]
+                changed["start", k] = [("start", k)]
+            changed["end", k] = [("end", k)]
             if self.tied[k]:
-                found["end", k].append(("start", (k + 1) % count))
+                changed["end", k].append(("start", (k + 1) % count))
             if k != self.lowest:
-                found["level", k] = [("level", k)]
-        found["low", 0] = [("level", k) for k in moves]
-        found |= {("number", k): [("number", k)] for k in self.free}
-        return {name: found[name] for name in found if name not in self.fixed}
+                changed["level", k] = [("level", k)]
+        changed["low", 0] = [("level", k) for k in moves]
+        changed |= {("number", k): [("number", k)] for k in self.free}
+        return {name: changed[name] for name in changed if name not in self.fixed}
 
     def value(self, name: Name) -> float:
         """Return the value of a parameter: rad, mm or rad, or a number."""
@@ -228,25 +228,25 @@ class LiftModel:
         count, after, widths = len(self.laws), self.after, self.ends - self.starts
         move, since = self.move_at(theta)
         lift = after[move]
-        found = {
+        slopes = {
             (kind, k): np.zeros(len(theta))
             for kind in ("start", "end", "level", "number")
             for k in range(count)
         }
         for k, law in enumerate(self.laws):
             following, rise = (k + 1) % count, after[k] - self.levels[k]
-            found["level", following][move == k] = 1.0
+            slopes["level", following][move == k] = 1.0
             on = (move == k) & (since < widths[k])
             x = since[on] / widths[k]
             done, rate = share(law, x, falling=self.falling(k))
             lift[on] = self.levels[k] + rise * done
-            found["start", k][on] = rise / widths[k] * rate * (x - 1.0)
-            found["end", k][on] = -rise / widths[k] * rate * x
-            found["level", k][on] += 1.0 - done
-            found["level", following][on] = done
+            slopes["start", k][on] = rise / widths[k] * rate * (x - 1.0)
+            slopes["end", k][on] = -rise / widths[k] * rate * x
+            slopes["level", k][on] += 1.0 - done
+            slopes["level", following][on] = done
             if k in self.free:
-                found["number", k][on] = rise * self._by_number(k, x)
-        return lift, found
+                slopes["number", k][on] = rise * self._by_number(k, x)
+        return lift, slopes
 
     def _by_number(self, k: int, x: Array) -> Array:
         """Return the derivative of a move's share by the number of its law, at shares of angle."""
@@ -338,9 +338,9 @@ def improved(model: LiftModel, rows: LiftRows, fall: float = _FALL) -> LiftModel
         for part in 0.5 ** np.arange(_HALVINGS):
             moved = model.moved({name: part * change for name, change in changes.items()})
             if np.all(np.array(moved.gaps) >= least):
-                found = moved.missed(rows)
-                if found[0] @ found[0] <= before:
-                    model, (off, columns) = moved, found
+                missed = moved.missed(rows)
+                if missed[0] @ missed[0] <= before:
+                    model, (off, columns) = moved, missed
                     break
         squares = float(off @ off)
         if before - squares <= fall * squares:

@@ -209,17 +209,17 @@ class Program(ShortRepr, Displacement):
         rounding = 4.0 * np.finfo(float).eps * self.period
         limits = JUMP * scales + rounding * np.append(scales[1:], inside[4])
         jumping = (np.abs(survey.after - survey.before)[:, :4] > limits)[:, 1:]
-        found: list[Jump] = []
+        jumps: list[Jump] = []
         for knot in np.flatnonzero(jumping.any(axis=1)).tolist():
             for order in 1 + np.flatnonzero(jumping[knot] & (knot > 0 or not self.open)):
                 before, after = (float(one[knot, order]) for one in (survey.before, survey.after))
                 share = abs(after - before) / self.peaks[order - 1]
                 theta = float(self.knots[knot])
                 jump = Jump(theta=theta, order=int(order), before=before, after=after, share=share)
-                found.append(jump)
+                jumps.append(jump)
                 if not jump.slight:
                     break
-        return tuple(found)
+        return tuple(jumps)
 
     @property
     def hard(self) -> tuple[Jump, ...]:

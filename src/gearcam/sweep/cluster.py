@@ -89,10 +89,10 @@ class Cluster(Engine):
     measure: Measure = measured
 
     def __post_init__(self) -> None:
-        found = _answered(self.address)
-        there = {f"the worker {name}": one for name, one in found["workers"].items()}
-        there["the scheduler"] = found["scheduler"]
-        _demand_same(_versions(), {name: _told(one["packages"]) for name, one in there.items()})
+        versions = _answered(self.address)
+        there = {f"the worker {name}": known for name, known in versions["workers"].items()}
+        there["the scheduler"] = versions["scheduler"]
+        _demand_same(_versions(), {name: _told(known["packages"]) for name, known in there.items()})
 
     @property
     def name(self) -> str:
@@ -340,17 +340,16 @@ def _answered(address: str) -> dict[str, Any]:
         raise MissingExtraError("clusters", "sweep") from error
 
     async def ask() -> dict[str, Any]:
-        options = {"timeout": _ANSWER_S, "set_as_default": False}
-        async with Client(address, asynchronous=True, **options) as client:
+        async with Client(
+            address, asynchronous=True, timeout=_ANSWER_S, set_as_default=False
+        ) as client:
             asked: Any = client.get_versions(packages=["gearcam"])
             return await asked
 
-    async def ask_once() -> dict[str, Any]:  # dask waits for ever for what answers to nothing
-        return await asyncio.wait_for(ask(), 1.5 * _ANSWER_S)
-
     with _silent():
         try:
-            return asyncio.run(ask_once())
+            # dask waits for ever for what answers to nothing
+            return asyncio.run(asyncio.wait_for(ask(), 1.5 * _ANSWER_S))
         except (ValueError, TypeError) as error:
             why = str(error)
         except Exception:
@@ -370,11 +369,11 @@ def _gone(address: str) -> DesignError:
 
 def _versions() -> dict[str, str]:
     """Return the versions of Python and packages here; empty for what is not installed."""
-    found = {"python": sys.version}
+    versions = {"python": sys.version}
     for name in _SAME[1:]:
         with suppress(PackageNotFoundError):
-            found[name] = version(name)
-    return _told(found)
+            versions[name] = version(name)
+    return _told(versions)
 
 
 def _told(versions: Mapping[str, Any]) -> dict[str, str]:

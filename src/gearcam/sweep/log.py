@@ -97,11 +97,11 @@ class Log:
         self._file.truncate(end)
 
     def _demand_same(self, line: bytes) -> None:
-        found: Any = None
+        head: Any = None
         with suppress(ValueError):
-            found = json.loads(line)
-        if found != self.head:
-            message = f"{self.path} is the log of another sweep{self._differing(found)}"
+            head = json.loads(line)
+        if head != self.head:
+            message = f"{self.path} is the log of another sweep{self._differing(head)}"
             allowed = "another folder (-o), or the same design and settings to go on"
             raise DesignError([Problem(message, allowed=allowed)])
 

@@ -80,11 +80,11 @@ class _Column:
             words, values = list(places), [places.get(text, math.nan) for text in texts]
         data = np.asarray(values, dtype="<f8" if self.given else "<f4")
         there = data[np.isfinite(data)]
-        one = {"name": self.name, "input": self.given, "words": words}
-        one["differs"] = bool(there.size and there.min() < there.max())
-        if there.size and not one["differs"]:
-            one["value"] = words[0] if words else text_of(float(there[0]))
-        return one | {"data": base64.b64encode(data.tobytes()).decode()}
+        column = {"name": self.name, "input": self.given, "words": words}
+        column["differs"] = bool(there.size and there.min() < there.max())
+        if there.size and not column["differs"]:
+            column["value"] = words[0] if words else text_of(float(there[0]))
+        return column | {"data": base64.b64encode(data.tobytes()).decode()}
 
     def _text(self, place: int) -> str:
         number = self._numbers[place]

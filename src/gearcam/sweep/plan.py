@@ -88,11 +88,11 @@ class Plan(ShortRepr):
     def values(self, number: int) -> dict[str, Any]:
         """Return the values of a variant by keys."""
         if self.sampling == "grid":
-            found = {}
+            values = {}
             for axis in reversed(self.axes):  # the last one changes fastest
                 number, place = divmod(number, len(axis.values))
-                found[axis.key] = axis.values[place]
-            return {axis.key: found[axis.key] for axis in self.axes}
+                values[axis.key] = axis.values[place]
+            return {axis.key: values[axis.key] for axis in self.axes}
         shares = zip(self.axes, self._shares[number].tolist(), strict=True)
         return {axis.key: self.value(axis, u) for axis, u in shares}
 
@@ -186,10 +186,10 @@ def latin_hypercube(count: int, axes: int, seed: int) -> Array:
 
 def flattened(table: Mapping[str, Any]) -> dict[str, Any]:
     """Return a table with dotted keys instead of tables in tables."""
-    found: dict[str, Any] = {}
+    flat: dict[str, Any] = {}
     for key, value in table.items():
         if isinstance(value, Mapping):
-            found |= {f"{key}.{inner}": one for inner, one in flattened(value).items()}
+            flat |= {f"{key}.{inner}": one for inner, one in flattened(value).items()}
         else:
-            found[key] = value
-    return found
+            flat[key] = value
+    return flat

@@ -106,20 +106,20 @@ class Crew:
         RuntimeError
             If a process cannot begin.
         """
-        source, found = iter(jobs), list[Built | None]()
+        source, rows = iter(jobs), list[Built | None]()
         while True:
             for one in self._members:
                 if one.job is None and (job := next(source, None)) is not None:
                     one.build(job)
-            yield from filter(None, found)  # while the next ones are built
+            yield from filter(None, rows)  # while the next ones are built
             busy: dict[Any, _Process] = {one.link: one for one in self._members if one.job}
             if not busy:
                 return
             due = min(one.due for one in busy.values())
             ready = wait(busy, max(0.0, min(_LOOK, due - time.monotonic())))
-            found = [busy[link].answer() for link in ready]
+            rows = [busy[link].answer() for link in ready]
             now = time.monotonic()
-            found += [one.lost(late=True) for one in busy.values() if one.job and one.due <= now]
+            rows += [one.lost(late=True) for one in busy.values() if one.job and one.due <= now]
 
     def stop(self) -> None:
         """End the processes at once and for good; any thread may."""
