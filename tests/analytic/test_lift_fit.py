@@ -151,6 +151,28 @@ def test_laws_are_alike_in_much_noise_only() -> None:
     assert loud.error(("start", 0)) > 100.0 * quiet.error(("start", 0))
 
 
+@pytest.mark.parametrize(
+    ("last", "noise", "seed"),
+    [("modified-sine", 0.04, 0), ("modified-sine", 0.04, 6), ("harmonic", 0.02, 0)],
+)
+def test_phases_share_a_law_unless_another_misses_clearly_less(
+    last: str, noise: float, seed: int
+) -> None:
+    moves = [
+        Move("modified-sine", 20, 80, 0, 10),
+        Move("modified-sine", 100, 160, 10, 2),
+        Move("modified-sine", 190, 260, 2, 12),
+        Move(last, 280, 350, 12, 0),
+    ]
+    theta, lift = rows(moves, 0.0, 180)
+    lift += np.random.default_rng(seed).normal(0.0, noise, len(theta))
+    fitted = fit_lift(theta, lift, (1.0, "mm"))
+    demand_found(fitted, moves)
+    first, *others, end = (named(fitted, k)[0] for k in range(4))
+    assert set(others) == {first}
+    assert (end == first) == (last == "modified-sine")
+
+
 def test_sizes_are_round_where_noise_allows_it() -> None:
     fitted = fit_lift(*rows(double_dwell("modified-sine"), 1e-2), (1.0, "mm"))
     low, up, high, down, rest = fitted.phases()
