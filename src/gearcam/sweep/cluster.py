@@ -30,9 +30,9 @@ from gearcam.base.errors import DesignError, MissingExtraError, Problem
 from gearcam.base.interrupts import unbroken
 from gearcam.designs.design import Design, design, document_of
 from gearcam.designs.reader import find_tables
-from gearcam.sweep.engine import MEMORY, SECONDS, Build, Engine, Job
+from gearcam.sweep.engine import Build, Engine, Job
 from gearcam.sweep.pool import Crew
-from gearcam.sweep.rows import Built, Measure, measured
+from gearcam.sweep.rows import Built
 
 _CHUNK_S: Final = 1.0
 """Time that a chunk should take, s: a task costs the scheduler about a millisecond."""
@@ -62,18 +62,12 @@ _KILLS: Final = "its worker ended twice while it was built alone"
 
 @dataclass(frozen=True, kw_only=True)
 class Cluster(Engine):
-    """The workers of a scheduler of dask.
+    """The workers of a scheduler of dask (see `Engine`); each thread of a worker has a process.
 
     Parameters
     ----------
     address : str
         Of the scheduler, such as ``tcp://host:8786``.
-    seconds : float, s
-        Largest time of a variant.
-    memory : int
-        Largest memory of the process of a thread, bytes.
-    measure : callable
-        ``measure(base, number, values)`` returns the row of a variant; a function of a module.
 
     Raises
     ------
@@ -84,9 +78,6 @@ class Cluster(Engine):
     """
 
     address: str
-    seconds: float = SECONDS
-    memory: int = MEMORY
-    measure: Measure = measured
 
     def __post_init__(self) -> None:
         versions = _answered(self.address)

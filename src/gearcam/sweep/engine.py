@@ -5,13 +5,14 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager
+from dataclasses import dataclass
 from typing import Any, Final
 
 from gearcam.base.display import ShortRepr
 from gearcam.designs.design import Design
 from gearcam.sweep.log import Log
 from gearcam.sweep.plan import Plan
-from gearcam.sweep.rows import Built
+from gearcam.sweep.rows import Built, Measure, measured
 
 Job = tuple[int, dict[str, Any]]
 """Number and values of a variant."""
@@ -29,8 +30,23 @@ MEMORY: Final = 4 << 30
 """Default limit of a process's memory, bytes."""
 
 
+@dataclass(frozen=True, kw_only=True)
 class Engine(ABC, ShortRepr):
-    """What builds variants."""
+    """What builds variants.
+
+    Parameters
+    ----------
+    seconds : float, s
+        Largest time of a variant.
+    memory : int
+        Largest memory of a process, bytes.
+    measure : callable
+        ``measure(base, number, values)`` returns the row of a variant; a function of a module.
+    """
+
+    seconds: float = SECONDS
+    memory: int = MEMORY
+    measure: Measure = measured
 
     @property
     @abstractmethod

@@ -20,8 +20,8 @@ from typing import Any, Final
 
 from gearcam.base.interrupts import unbroken
 from gearcam.designs.design import Design
-from gearcam.sweep.engine import MEMORY, SECONDS, Build, Engine, Job
-from gearcam.sweep.rows import Built, Measure, measured
+from gearcam.sweep.engine import Build, Engine, Job
+from gearcam.sweep.rows import Built
 from gearcam.sweep.worker import READY, main
 
 _SPAWN: Final = get_context("spawn")  # threads of this process do not survive a fork
@@ -40,24 +40,15 @@ _TWICE: Final = "its process ended twice while it was built"
 
 @dataclass(frozen=True, kw_only=True)
 class Processes(Engine):
-    """Processes of this machine.
+    """Processes of this machine (see `Engine`).
 
     Parameters
     ----------
     jobs : int
         Number of processes.
-    seconds : float, s
-        Largest time of a variant.
-    memory : int
-        Largest memory of a process, bytes.
-    measure : callable
-        ``measure(base, number, values)`` returns the row of a variant; a function of a module.
     """
 
     jobs: int
-    seconds: float = SECONDS
-    memory: int = MEMORY
-    measure: Measure = measured
 
     @property
     def name(self) -> str:
