@@ -97,6 +97,13 @@ class DesignError(GearcamError, ValueError):
         self.problems = tuple(problems)
         super().__init__("\n".join(str(problem) for problem in self.problems))
 
+    @classmethod
+    def of(
+        cls, message: str, *, key: str = "", value: object = None, allowed: str = ""
+    ) -> DesignError:
+        """Return the error of one mistake in no file (see `Problem`)."""
+        return cls([Problem(message, key=key, value=value, allowed=allowed)])
+
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self.problems,)
 

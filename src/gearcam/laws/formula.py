@@ -26,7 +26,7 @@ Given = str | Functions
 
 
 def formula_problems(name: str, given: Given | None, variable: str = VARIABLE) -> Iterator[Breach]:
-    """Yield the faults of the formula of a law, if it is a text, for its ``problems``."""
+    """Yield the faults of a formula that is a text, for ``problems`` of a law (see `parse`)."""
     try:
         if isinstance(given, str):
             parse(given, variable)

@@ -116,11 +116,9 @@ def settings_of(texts: Sequence[str]) -> dict[str, str]:
     for text in texts:
         key, words = setting_of(text) or ("", "")
         if not words:
-            problem = Problem(f"{show(text)} is not KEY=...", key="--set", allowed=FORM)
-            raise DesignError([problem])
+            raise DesignError.of(f"{show(text)} is not KEY=...", key="--set", allowed=FORM)
         if key in settings:
-            problem = Problem(f"{key} is set twice", key="--set", allowed="each key once")
-            raise DesignError([problem])
+            raise DesignError.of(f"{key} is set twice", key="--set", allowed="each key once")
         settings[key] = words
     return settings
 

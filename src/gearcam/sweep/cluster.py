@@ -26,7 +26,7 @@ from pathlib import Path
 from socket import gethostname
 from typing import Any, Final
 
-from gearcam.base.errors import DesignError, MissingExtraError, Problem
+from gearcam.base.errors import DesignError, MissingExtraError
 from gearcam.base.interrupts import unbroken
 from gearcam.designs.design import Design, design, document_of
 from gearcam.designs.reader import find_tables
@@ -284,7 +284,7 @@ class _Chunks:
         if isinstance(error, ModuleNotFoundError):
             message = f"a worker has no module {error.name}"
             allowed = "gearcam, and the modules of a design's functions, on all workers"
-            raise DesignError([Problem(message, key="--scheduler", allowed=allowed)])
+            raise DesignError.of(message, key="--scheduler", allowed=allowed)
         if not isinstance(error, KilledWorker):
             raise error
         if not alone:
@@ -348,14 +348,13 @@ def _answered(address: str) -> dict[str, Any]:
     allowed = (
         "the address of a running scheduler, such as tcp://HOST:8786 (`dask scheduler` starts one)"
     )
-    problem = Problem(f"{address}: {why}", key="--scheduler", allowed=allowed)
-    raise DesignError([problem])
+    raise DesignError.of(f"{address}: {why}", key="--scheduler", allowed=allowed)
 
 
 def _gone(address: str) -> DesignError:
     message = f"{address}: the scheduler does not answer any more"
     allowed = "the same command, which goes on, when it runs again"
-    return DesignError([Problem(message, key="--scheduler", allowed=allowed)])
+    return DesignError.of(message, key="--scheduler", allowed=allowed)
 
 
 def _versions() -> dict[str, str]:
@@ -393,7 +392,7 @@ def _demand_same(here: Mapping[str, str], others: Mapping[str, Mapping[str, str]
             wanted = ", ".join(f"{name} {one}" for name, one in here.items() if one)
             message = f"{whose} has {', '.join(wrong)}"
             allowed = f"the same on scheduler and workers: {wanted}"
-            raise DesignError([Problem(message, key="--scheduler", allowed=allowed)])
+            raise DesignError.of(message, key="--scheduler", allowed=allowed)
 
 
 @contextmanager

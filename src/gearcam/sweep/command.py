@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final
 
-from gearcam.base.errors import DesignError, Problem
+from gearcam.base.errors import DesignError
 from gearcam.base.numerals import formatted
 from gearcam.commands import GOOD, IMPOSSIBLE, INTERRUPTED, Options, add_output, each
 from gearcam.console import complain, progress_bar, say
@@ -68,8 +68,7 @@ def engine_of(options: Options) -> Engine:
     for name in ("jobs", "limit", "memory"):
         value = options[name]
         if value is not None and not value > 0:
-            problem = Problem("is not above 0", key=f"--{name}", value=value, allowed="above 0")
-            raise DesignError([problem])
+            raise DesignError.of("is not above 0", key=f"--{name}", value=value, allowed="above 0")
     seconds, memory = options["limit"], int(options["memory"] * 2**30)
     if options["scheduler"]:
         from gearcam.sweep.cluster import Cluster
@@ -87,7 +86,7 @@ def _sweep(options: Options) -> int:
     plan = plan_of(options)
     if plan.count > MANY and not options["yes"]:
         message = f"the sweep has {plan.count} variants"
-        raise DesignError([Problem(message, allowed=f"at most {MANY}, or --yes")])
+        raise DesignError.of(message, allowed=f"at most {MANY}, or --yes")
     engine, folder = engine_of(options), Path(options["output"])
     stopped = False
     with Log(folder, plan.head) as log:
@@ -152,13 +151,11 @@ def plan_of(options: Options) -> Plan:
     given |= {name: options[name] for name in _SETTINGS if options[name] is not None}
     for name in ("random", "latin"):
         if given[name] is not None and not (isinstance(given[name], int) and given[name] > 0):
-            problem = Problem(
+            raise DesignError.of(
                 "is not a number of samples", key=name, value=given[name], allowed="1 or more"
             )
-            raise DesignError([problem])
     if given["random"] and given["latin"]:
-        problem = Problem("random and latin are both given", allowed="one of them")
-        raise DesignError([problem])
+        raise DesignError.of("random and latin are both given", allowed="one of them")
     sampling: Any = next((name for name in ("random", "latin") if given[name]), "grid")
     seed = 1 if given["seed"] is None else given["seed"]
     return Plan(
@@ -189,8 +186,7 @@ def axes_given(options: Options) -> tuple[Design, tuple[Varied, ...], dict[str, 
     axes = {one.key: one for one in axes_of(flattened(table), _TITLE)}
     axes |= {one.key: one for one in axes_of(settings_of(options["settings"]))}
     if not axes:
-        problem = Problem("nothing is to be varied", allowed="--set KEY=..., or a table [sweep]")
-        raise DesignError([problem])
+        raise DesignError.of("nothing is to be varied", allowed="--set KEY=..., or a table [sweep]")
     return base, tuple(axes.values()), given
 
 

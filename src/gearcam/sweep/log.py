@@ -16,7 +16,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, BinaryIO, Final, Self
 
-from gearcam.base.errors import DesignError, Problem, WriteError
+from gearcam.base.errors import DesignError, WriteError
 from gearcam.sweep.rows import Built
 
 LOG: Final = "sweep.log"
@@ -103,7 +103,7 @@ class Log:
         if head != self.head:
             message = f"{self.path} is the log of another sweep{self._differing(head)}"
             allowed = "another folder (-o), or the same design and settings to go on"
-            raise DesignError([Problem(message, allowed=allowed)])
+            raise DesignError.of(message, allowed=allowed)
 
     def _differing(self, found: Any) -> str:
         """Return in words what the head of the file has instead of this one."""

@@ -12,7 +12,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearcam.base.errors import DesignError, InfeasibleError, Problem, WriteError
+from gearcam.base.errors import DesignError, InfeasibleError, WriteError
 from gearcam.base.facts import lined_up, text_of
 from gearcam.base.numerals import formatted
 from gearcam.commands import GOOD, IMPOSSIBLE, INTERRUPTED, Options, add_output, each
@@ -69,8 +69,7 @@ def _optimize(options: Options, file: str) -> int:
     base = base.with_({f"goal.{key}": one for key, one in given.items() if one is not None})
     goal: Any = getattr(base, "goal", None)
     if goal is None or not goal.signs:
-        problem = Problem("no goal is given", key="goal", allowed="minimize or maximize a fact")
-        raise DesignError([problem])
+        raise DesignError.of("no goal is given", key="goal", allowed="minimize or maximize a fact")
     _demand_variety(axes)
     plan = Plan(base=base, axes=axes, sampling="random", samples=goal.trials, seed=goal.seed)
     price = _price(plan, goal.signs)
@@ -78,7 +77,7 @@ def _optimize(options: Options, file: str) -> int:
     method, why = (goal.method, "") if goal.method else usual(search, price)
     if method == "scipy" and search.goals > 1:
         message, allowed = '"scipy" searches for one goal', "nsga2 for several, or one goal"
-        raise DesignError([Problem(message, key="goal.method", allowed=allowed)])
+        raise DesignError.of(message, key="goal.method", allowed=allowed)
     engine, folder = engine_of(options), Path(options["output"])
     stopped = False
     head = {**plan.head, "method": method, "goals": _goals(goal.signs)}
@@ -138,11 +137,10 @@ def _demand_variety(axes: Sequence[Varied]) -> None:
     """
     own = [axis.key for axis in axes if path_of(axis.key)[0] == "goal"]
     if own:
-        problem = Problem("a goal is not varied", key=own[0], allowed="other keys of the design")
-        raise DesignError([problem])
+        raise DesignError.of("a goal is not varied", key=own[0], allowed="other keys of the design")
     if all(len(axis.values) == 1 for axis in axes):
         message = f"{axes[0].key} has one value" if len(axes) == 1 else "each key has one value"
-        raise DesignError([Problem(message, allowed="several values, or a range from:to")])
+        raise DesignError.of(message, allowed="several values, or a range from:to")
 
 
 def _count(trials: int) -> str:
@@ -165,8 +163,7 @@ def _price(plan: Plan, signs: dict[str, float]) -> float:
     random = np.random.default_rng(plan.seed)
     points = np.vstack([np.full((1, len(plan.axes)), 0.5), random.random((_LOOKS, len(plan.axes)))])
     for point in points:
-        pairs = zip(plan.axes, point.tolist(), strict=True)
-        values = {axis.key: plan.value(axis, u) for axis, u in pairs}
+        values = plan.at(point)
         row = measured(plan.base, 0, values)
         if row.made:
             demand_facts(signs, row.facts)

@@ -84,13 +84,9 @@ class Trials(ShortRepr):
 
     def _rows_of(self, points: Array) -> list[Built]:
         """Return the rows of points: from the log, or built and appended to it."""
-        axes, first = self.plan.axes, len(self.rows)
-        values = [
-            {axis.key: self.plan.value(axis, float(u)) for axis, u in zip(axes, one, strict=True)}
-            for one in points
-        ]
-        numbers = range(first, first + len(values))
-        jobs = list(zip(numbers, values, strict=True))
+        first = len(self.rows)
+        numbers = range(first, first + len(points))
+        jobs = list(zip(numbers, map(self.plan.at, points), strict=True))
         known = {
             number: row
             for number, one in jobs

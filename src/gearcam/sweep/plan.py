@@ -93,19 +93,15 @@ class Plan(ShortRepr):
                 number, place = divmod(number, len(axis.values))
                 values[axis.key] = axis.values[place]
             return {axis.key: values[axis.key] for axis in self.axes}
-        shares = zip(self.axes, self._shares[number].tolist(), strict=True)
-        return {axis.key: self.value(axis, u) for axis, u in shares}
+        return self.at(self._shares[number])
 
-    def value(self, axis: Varied, u: float) -> Any:
-        """Return a value of an axis, whole for keys of whole numbers.
+    def at(self, point: Array) -> dict[str, Any]:
+        """Return the values at a point (axes,) of the unit cube, by keys."""
+        shares = zip(self.axes, point.tolist(), strict=True)
+        return {axis.key: self._value(axis, u) for axis, u in shares}
 
-        Parameters
-        ----------
-        axis : Varied
-            One of the axes.
-        u : float
-            Share of its range, in [0, 1).
-        """
+    def _value(self, axis: Varied, u: float) -> Any:
+        """Return the value at a share of an axis, whole for keys of whole numbers."""
         value = axis.at(u)
         if axis.key not in self._wholes:
             return value
@@ -117,11 +113,11 @@ class Plan(ShortRepr):
         least, largest = self._wholes.get(axis.key, (0, 0))
         if least > largest:
             message = f"there is no whole number in {axis.text}"
-            raise DesignError([Problem(message, key=axis.key, allowed="a wider range")])
+            raise DesignError.of(message, key=axis.key, allowed="a wider range")
         first: DesignError | None = None
         for u in _LOOKS:
             try:
-                self.base.with_({axis.key: self.value(axis, u)})
+                self.base.with_({axis.key: self._value(axis, u)})
             except DesignError as error:
                 first = first or error
             else:
