@@ -333,6 +333,9 @@ def _demand_rows(rows: LiftRows, run: Ints, done: Array) -> None:
 Choice = tuple[Any, bool]
 """A motion law, and whether its number is fitted."""
 
+Laws = tuple[Choice, ...]
+"""Those of all moves."""
+
 
 @cache
 def _choices() -> tuple[Choice, ...]:
@@ -356,10 +359,10 @@ class _Trials:
 
     start: LiftModel
     rows: LiftRows
-    models: dict[tuple[Choice, ...], LiftModel] = field(default_factory=dict)
-    squares: dict[tuple[Choice, ...], float] = field(default_factory=dict)
+    models: dict[Laws, LiftModel] = field(default_factory=dict)
+    squares: dict[Laws, float] = field(default_factory=dict)
 
-    def cost(self, choices: tuple[Choice, ...]) -> float:
+    def cost(self, choices: Laws) -> float:
         """Return the sum of squares that laws leave, and more for each number that is chosen."""
         if choices not in self.models:
             model = self.start
@@ -386,7 +389,7 @@ class _Trials:
                 laws = min(self.in_pairs(laws, k, plain), key=self.cost)
         return self.models[self.swept(laws, _choices())]
 
-    def swept(self, laws: tuple[Choice, ...], choices: Iterable[Choice]) -> tuple[Choice, ...]:
+    def swept(self, laws: Laws, choices: Iterable[Choice]) -> Laws:
         """Return the best laws, tried move by move."""
         for _ in range(_SWEEPS):
             before = laws
@@ -396,61 +399,59 @@ class _Trials:
                 break
         return laws
 
-    def in_pairs(
-        self, found: tuple[Choice, ...], k: int, choices: Iterable[Choice]
-    ) -> Iterator[tuple[Choice, ...]]:
+    def in_pairs(self, laws: Laws, k: int, choices: Iterable[Choice]) -> Iterator[Laws]:
         """Yield the laws with those that suit a move and the next best, in all pairs."""
-        pair = (k, (k + 1) % len(found))
-        part, rows = _alone(self.models[found], k, 2, self.rows)
+        following = (k + 1) % len(laws)
+        part, rows = _pair_alone(self.models[laws], k, self.rows)
 
-        def squares(laws: tuple[Choice, ...]) -> float:
-            one = part.with_law(0, laws[0][0]).with_law(1, laws[1][0])
-            return improved(one, rows, _ROUGH).squares(rows)
+        def squares(pair: Laws) -> float:
+            model = part.with_law(0, pair[0][0]).with_law(1, pair[1][0])
+            return improved(model, rows, _ROUGH).squares(rows)
 
-        for laws in sorted(product(choices, repeat=2), key=squares)[:_PAIRED]:
-            yield _changed(found, dict(zip(pair, laws, strict=True)))
+        for first, second in sorted(product(choices, repeat=2), key=squares)[:_PAIRED]:
+            yield _changed(laws, {k: first, following: second})
 
     def near(self, squares: float, variance: float) -> list[LiftModel]:
         """Return the models that cannot be distinguished from one, the simplest and best first."""
         most = squares + _APART * variance
-        good = [one for one, squares in self.squares.items() if squares <= most]
+        good = [laws for laws, missed in self.squares.items() if missed <= most]
         name = 2.0 * math.log(len(_choices()))
 
-        def order(laws: tuple[Choice, ...]) -> tuple[int, float]:
+        def order(laws: Laws) -> tuple[int, float]:
             model = self.models[laws]
             more = _APART * len(model.parameters) + name * len(set(laws))
             return len(model.free), self.squares[laws] + more * variance
 
-        return [self.models[one] for one in sorted(good, key=order)]
+        return [self.models[laws] for laws in sorted(good, key=order)]
 
 
-def _alone(model: LiftModel, k: int, count: int, rows: LiftRows) -> tuple[LiftModel, LiftRows]:
-    """Return a move and those after it as a model of their own, and their rows.
+def _pair_alone(model: LiftModel, k: int, rows: LiftRows) -> tuple[LiftModel, LiftRows]:
+    """Return a move and the next as a model of their own, and their rows.
 
     Where another move touches some rows are left out. A move where there are no rows closes the
     ring.
     """
-    numbers = [(k + one) % len(model.laws) for one in range(count)]
-    last, after = numbers[-1], (numbers[-1] + 1) % len(model.laws)
+    count = len(model.laws)
+    last, after = (k + 1) % count, (k + 2) % count
     widths, dwells = model.gaps
-    starts = model.starts[k] + (model.starts[numbers] - model.starts[k]) % TURN
-    ends = starts + widths[numbers]
+    starts = model.starts[k] + np.array([0.0, (model.starts[last] - model.starts[k]) % TURN])
+    ends = starts + widths[[k, last]]
     low = starts[0] - _BESIDE * dwells[k - 1] + _INSET * widths[k] * model.tied[k - 1]
     high = ends[-1] + _BESIDE * dwells[last] - _INSET * widths[last] * model.tied[last]
     inside = (rows.theta - low) % TURN <= high - low
     third = (TURN - (high - low)) / 3.0
     alone = LiftModel(
-        laws=(*(model.laws[one] for one in numbers), model.laws[k]),
+        laws=(model.laws[k], model.laws[last], model.laws[k]),
         starts=np.append(starts, high + third),
         ends=np.append(ends, high + 2.0 * third),
-        levels=model.levels[[*numbers, after]],
-        tied=(*(model.tied[one] for one in numbers[:-1]), False, False),
-        fixed=frozenset({("start", count), ("end", count)}),
+        levels=model.levels[[k, last, after]],
+        tied=(model.tied[k], False, False),
+        fixed=frozenset({("start", 2), ("end", 2)}),
     )
     return alone, replace(rows, theta=rows.theta[inside], lift=rows.lift[inside])
 
 
-def _changed(laws: tuple[Choice, ...], new: dict[int, Choice]) -> tuple[Choice, ...]:
+def _changed(laws: Laws, new: dict[int, Choice]) -> Laws:
     return tuple(new.get(k, one) for k, one in enumerate(laws))
 
 
