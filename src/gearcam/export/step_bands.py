@@ -21,7 +21,7 @@ from typing import Any, Final
 import numpy as np
 
 from gearcam.base.numerals import formatted
-from gearcam.export.step_shapes import RESOLUTION, occt, properties
+from gearcam.export.step_shapes import RESOLUTION, occt, properties, valid_solids
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.nets import SplineNet, spline_breaks, spline_poles
 from gearcam.numeric.splines import DEGREE
@@ -75,19 +75,11 @@ def banded_solid(body: BandedBody) -> Any:
     SolidError
         If it is invalid, or its volume is not that of the body.
     """
-    try:
-        solid = _Maker(body).solid()
-    except Exception as error:
-        # the only common base of the kernel's errors
-        if not type(error).__module__.startswith("OCP"):
-            raise
-        raise SolidError(f"{body.name}: the solid could not be made: {error}") from error
-    if not occt.BRepCheck_Analyzer(solid).IsValid():
-        raise SolidError(f"{body.name}: the solid is invalid")
-    volume = properties(solid).Mass()
-    if abs(volume - body.volume) > body.volume_error:
+    (solid,) = valid_solids(body.name, lambda: [_Maker(body).solid()])
+    off = abs(properties(solid).Mass() - body.volume)
+    if off > body.volume_error:
         raise SolidError(
-            f"{body.name}: the solid's volume is {formatted(abs(volume - body.volume), 3)} mm3 off,"
+            f"{body.name}: the solid's volume is {formatted(off, 3)} mm3 off,"
             f" that of the mesh explains {formatted(body.volume_error, 3)} mm3"
         )
     return solid

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from importlib import import_module
 from typing import Any, Final
@@ -90,19 +90,39 @@ def solids_of(part: Part, tolerance: float) -> list[Any]:
     SolidError
         If one is empty, in pieces or invalid, or their volume is not that of the part.
     """
+    steps = range(len(part.steps))
+    made = valid_solids(part.name, lambda: [_step(part, step, tolerance) for step in steps])
+    volume = sum(properties(solid).Mass() for solid in made)
+    demand_volume(part, volume, VOLUME_ERROR * part.volume + _explained(part, tolerance))
+    return made
+
+
+def valid_solids(name: str, make: Callable[[], list[Any]]) -> list[Any]:
+    """Return the solids of the kernel that a function makes.
+
+    Parameters
+    ----------
+    name : str
+        Of the body, for messages.
+    make : callable
+        Returns them.
+
+    Raises
+    ------
+    SolidError
+        If they cannot be made, or one is invalid.
+    """
     try:
-        made = [_step(part, number, tolerance) for number in range(len(part.steps))]
+        made = make()
     except SolidError as error:
-        raise SolidError(f"{part.name}: {error}") from error
+        raise SolidError(f"{name}: {error}") from error
     except Exception as error:
         # the only common base of the kernel's errors
         if not type(error).__module__.startswith("OCP"):
             raise
-        raise SolidError(f"{part.name}: the solid could not be made: {error}") from error
+        raise SolidError(f"{name}: the solid could not be made: {error}") from error
     if not all(occt.BRepCheck_Analyzer(solid).IsValid() for solid in made):
-        raise SolidError(f"{part.name}: the solid is invalid")
-    volume = sum(properties(solid).Mass() for solid in made)
-    demand_volume(part, volume, VOLUME_ERROR * part.volume + _explained(part, tolerance))
+        raise SolidError(f"{name}: the solid is invalid")
     return made
 
 

@@ -112,8 +112,8 @@ class Turning:
     def overlaps(self, phi1: Array, overclosure: float, lead: Array | float = 0.0) -> Overlaps:
         """Return all pieces of overlap at phases (see `pose`)."""
         pose = self.pose(phi1, overclosure, lead)
-        step, half_teeth = self._candidates(pose)
-        polygons = self.driver.placed(half_teeth, pose[step])
+        step, driving = self._candidates(pose)
+        polygons = self.driver.placed(driving, pose[step])
         own, mate = self._tree.query(polygons)
         mates = self.driven.polygons[mate]
         # prepared polygons first: twice as fast as the tree's own test
@@ -122,7 +122,7 @@ class Turning:
         area = shapely.area(shared)
         some = np.flatnonzero(area > 0.0)
         own, mate, shared = own[hit][some], mate[hit][some], shared[some]
-        half = np.stack([half_teeth[own] + self.driver.first, mate + self.driven.first])
+        half = np.stack([driving[own] + self.driver.first, mate + self.driven.first])
         bounds = shapely.bounds(shared)
         corners, of = shapely.get_coordinates(shared, return_index=True)
         seen = np.abs(as_complex(corners) - pose.shift[step[own]][of])

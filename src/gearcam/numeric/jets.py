@@ -205,7 +205,7 @@ def sqrt(x: Jet) -> Jet:
 
 
 def _oscillate(x: Jet, sine: bool) -> Jet:
-    """Return sin or cos of a jet, with its derivative g beside it: f' = g*x', g' = -f*x'."""
+    """Return sin or cos of a jet."""
     f: list[Value] = [np.sin(x.c[0]) if sine else np.cos(x.c[0])]
     if not x.order:
         return Jet(f)
@@ -217,11 +217,16 @@ def _oscillate(x: Jet, sine: bool) -> Jet:
             factor = factor * x.c[1] / k if k > 1 else factor
             f.append((g[0] if k % 2 else f[0]) * (factor if k % 4 < 2 else -factor))
         return Jet(f)
+    return _turning(x, f, g)[0]
+
+
+def _turning(x: Jet, f: list[Value], g: list[Value]) -> tuple[Jet, Jet]:
+    """Return f and g of a jet from their values: f' = g*x', g' = -f*x'."""
     for k in range(1, x.order + 1):
         weights = _weights(x, k)
         f.append(_total([w * g[j] for w, j in weights]))
         g.append(-_total([w * f[j] for w, j in weights]))
-    return Jet(f)
+    return Jet(f), Jet(g)
 
 
 def sin(x: Jet) -> Jet:
@@ -238,13 +243,7 @@ def sin_cos(x: Jet | Array) -> tuple[Any, Any]:
     """Sine and cosine of a jet, in half the time of both, or of an array."""
     if not isinstance(x, Jet):
         return np.sin(x), np.cos(x)
-    f: list[Value] = [np.sin(x.c[0])]
-    g: list[Value] = [np.cos(x.c[0])]
-    for k in range(1, x.order + 1):
-        weights = _weights(x, k)
-        f.append(_total([w * g[j] for w, j in weights]))
-        g.append(-_total([w * f[j] for w, j in weights]))
-    return Jet(f), Jet(g)
+    return _turning(x, [np.sin(x.c[0])], [np.cos(x.c[0])])
 
 
 def tan(x: Jet) -> Jet:
