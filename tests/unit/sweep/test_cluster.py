@@ -6,6 +6,7 @@ import os
 import signal
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from importlib.util import find_spec
 from typing import Any
 
 import pytest
@@ -19,8 +20,9 @@ from gearcam.sweep.rows import Built, measured
 from helpers_pairs import PROFILES
 from helpers_sweep import BASE, odd
 
-distributed = pytest.importorskip("distributed")
-dask = pytest.importorskip("dask")
+pytestmark = pytest.mark.skipif(
+    find_spec("distributed") is None, reason="needs the extra for clusters"
+)
 
 Jobs = Sequence[tuple[int, dict[str, Any]]]
 
@@ -32,6 +34,9 @@ def local() -> Iterator[Any]:
     What a killed worker had is asked for as long as dask tries to connect: 30 s by default. A
     worker that begins again just 15 s after it was lost would be given up.
     """
+    import dask
+    import distributed
+
     settings = {
         "distributed.comm.timeouts.connect": "2s",
         "distributed.deploy.lost-worker-timeout": "300s",
