@@ -136,7 +136,7 @@ class Kind(DesignKind):
     charts: Mapping[str, ChartMaker] = field(default_factory=dict)
     scene: Callable[[Any, int], Scene | None] = lambda *_: None
     advice: Callable[[], Any] = _PLAIN_ADVICE
-    studies: OpenMapping[Study] = field(default_factory=OpenMapping)
+    studies: OpenMapping[Study] = field(default_factory=OpenMapping[Study])
     ladders: Mapping[str, Callable[[Any], Any]] = field(default_factory=dict)
     public: Mapping[str, type] = field(default_factory=dict)
     cut: bool = True
