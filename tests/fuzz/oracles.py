@@ -19,6 +19,7 @@ import numpy as np
 
 from fuzz.outcome import Failure
 from gearcam.base.errors import GearcamError, InfeasibleError
+from gearcam.designs.outputs import MESHES
 from gearcam.numeric.arrays import as_pairs
 from gearcam.numeric.contour import Contour
 from gearcam.parts.body import Layer, Part
@@ -161,9 +162,7 @@ def _summary(path: Path) -> str:
 
 
 _READERS: Final[dict[str, Callable[[Path], str]]] = {
-    ".stl": _solids,
-    ".3mf": _solids,
-    ".glb": _solids,
+    **dict.fromkeys((f".{kind}" for kind in MESHES), _solids),
     ".dxf": _drawing,
     ".svg": _markup,
     ".csv": _table,

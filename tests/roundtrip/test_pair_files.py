@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from ezdxf.filemanagement import read as read_dxf
 
+from gearcam.designs.outputs import MESHES
 from gearcam.kinds.gear_pair.design import PairOutputSpec
 from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.numeric.pose import Pose
@@ -114,7 +115,7 @@ def glb_bodies(data: bytes) -> dict[str, np.ndarray]:
     return made
 
 
-@pytest.mark.parametrize("kind", ["stl", "3mf", "glb"])
+@pytest.mark.parametrize("kind", MESHES)
 def test_both_bodies_stand_where_they_belong(kind: str) -> None:
     found = bodies(kind)
     assert list(found) == ["gear1", "gear2"]

@@ -93,6 +93,9 @@ def tanh(x: Any) -> Any:
     return Slope(value, (1 - value * value) * x.d) if isinstance(x, Slope) else value
 
 
+pi = mp.pi
+"""For formulas that are written once for numpy and for 30 digits."""
+
 Function = Callable[[Slope], Slope]
 Piece = tuple[Number, Number, Function]
 

@@ -1,4 +1,4 @@
-"""Exporters: drawings (dxf, svg), solids (stl, 3mf, glb), tables (csv), and the writing of files.
+"""Exporters: drawings (dxf, svg), solids (meshes, step), tables (csv), and the writing of files.
 
 Each exporter turns a drawing, a mesh or columns into bytes and touches no disk; `write` alone
 writes, whole or not at all, and `listing` decides what becomes of older files. Exporters see parts,

@@ -272,7 +272,7 @@ def test_the_guide_is_followed_to_its_end(tmp_path: Path) -> None:
             assert f"`{path.relative_to(tmp_path)}`" in GUIDE
             path.write_text(block, encoding="utf-8")
         (home,) = re.findall(rf'`("{module}": .*?)`', GUIDE)
-        _with_line(law / "base.py", '}\n"""The laws of each module', f"    {home}")
+        _with_line(law / "__init__.py", f'    }},\n    "{kind}_laws"', f"        {home}")
         (line,) = re.findall(rf"`(from gearcam.laws.{kind}.{module} import .*)`", GUIDE)
         _with_line(law / "__init__.py", last, f"    {line}")
     commands = re.findall(r"^    \.venv/bin/python -m (pytest .*)$", GUIDE, re.MULTILINE)

@@ -13,6 +13,7 @@ import gearcam
 import reference
 from gearcam.base.findings import CHECKS
 from gearcam.base.quantities import REQUIRED
+from gearcam.designs.outputs import MESHES
 from gearcam.laws.motion import MOTION_LAWS
 from gearcam.laws.ratio import LAWS
 from gearcam.results.kind import KINDS
@@ -42,7 +43,7 @@ STRICT: tuple[tuple[str, dict[str, object]], ...] = (
 LONG = "extreme/table_noise"
 """One of them, which takes long."""
 
-SLOW = ("step", "report", "stl", "3mf", "glb", "drawing-svg")
+SLOW = ("step", "report", *MESHES, "drawing-svg")
 """Words of ``files`` whose names are as those of others, but for the ending."""
 
 

@@ -34,9 +34,8 @@ def local() -> Iterator[Any]:
     What a killed worker had is asked for as long as dask tries to connect: 30 s by default. A
     worker that begins again just 15 s after it was lost would be given up.
     """
-    import dask
-    import distributed
-
+    dask: Any = pytest.importorskip("dask")  # they are loaded by the tests that need them
+    distributed: Any = pytest.importorskip("distributed")
     settings = {
         "distributed.comm.timeouts.connect": "2s",
         "distributed.deploy.lost-worker-timeout": "300s",

@@ -23,6 +23,7 @@ from fuzz.outcome import BUILT, REFUSED, WRONG, Outcome, Task
 from fuzz.pool import Pool
 from fuzz.shrink import shrunk
 from gearcam.base.errors import DesignError, InfeasibleError
+from gearcam.designs.outputs import MESHES
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.results.advice import Remedies, Remedy
 from helpers_pairs import PROFILES
@@ -127,7 +128,7 @@ def small(tmp_path_factory: pytest.TempPathFactory) -> Any:
     folder = tmp_path_factory.mktemp("small")
     (folder / "small.toml").write_text(SMALL)
     result = gearcam.build(gearcam.load(folder / "small.toml"))
-    formats = ["csv", "stl", "3mf", "glb", "svg", "dxf"]
+    formats = ["csv", *MESHES, "svg", "dxf"]
     return SimpleNamespace(result=result, written=result.write(folder, files=formats))
 
 

@@ -16,6 +16,7 @@ import shapely
 import gearcam as gc
 from gearcam.export.dxf import GREY
 from gearcam.kinds.mechanism.drawn import distances, path_within, picture
+from gearcam.kinds.mechanism.names import parts_of, tables_of
 from gearcam.kinds.mechanism.parts.picture import Picture
 from gearcam.numeric.arrays import as_pairs
 from gearcam.pictures.drawings import GHOST, MEMBER, TRACE, Circle, chains
@@ -485,8 +486,9 @@ def test_names_stay_on_their_joints(name: str) -> None:
     scene = result.scene(FEW)
     where = {text: one.pose.apply(at) for one in scene.bodies for text, at in one.names}
     design = result.design
-    others = (*design.crank, *design.slide, *design.dyad, *design.chain, *design.hoist)
-    joints = [*(one.name for one in (*design.joint, *design.point)), *(o.joint for o in others)]
+    parts = [part for *_, part in parts_of(tables_of(design))]
+    joints = [part.joint for part in parts if hasattr(part, "joint")]
+    joints += [one.name for one in (*design.joint, *design.point)]
     for joint_name in joints:
         place = joint(result, joint_name, scene.places)
         assert np.abs(where[joint_name] - place).max() < 1e-6
