@@ -486,7 +486,7 @@ def test_names_stay_on_their_joints(name: str) -> None:
     scene = result.scene(FEW)
     where = {text: one.pose.apply(at) for one in scene.bodies for text, at in one.names}
     design = result.design
-    parts = [part for *_, part in parts_of(tables_of(design))]
+    parts: list[Any] = [part for *_, part in parts_of(tables_of(design))]
     joints = [part.joint for part in parts if hasattr(part, "joint")]
     joints += [one.name for one in (*design.joint, *design.point)]
     for joint_name in joints:
