@@ -18,7 +18,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from gearcam.base.display import cut
-from gearcam.base.errors import DesignError, Problem
+from gearcam.base.errors import DesignError
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
@@ -30,13 +30,18 @@ def group_of(kind: str, what: str) -> str:
 
 
 @cache
+def every_entry_point() -> Any:  # its class differs between versions of Python
+    """Return the entry points of all installed packages; looking through them takes long."""
+    from importlib.metadata import entry_points
+
+    return entry_points()
+
+
 def brought(group: str) -> Mapping[str, EntryPoint]:
     """Return the entry points of a `group`, without ``gearcam.``, by name; none is loaded."""
     if not group:
         return {}
-    from importlib.metadata import entry_points
-
-    return {one.name: one for one in entry_points(group=f"gearcam.{group}")}
+    return {one.name: one for one in every_entry_point().select(group=f"gearcam.{group}")}
 
 
 def load_brought(group: str, name: str) -> Any:
@@ -67,10 +72,10 @@ def load_brought(group: str, name: str) -> Any:
         package = point.dist.name if point.dist else point.module
         message = f"{type(error).__name__}: {error}"
         message = f"the package {package} brings it, but cannot be loaded ({message})"
-        raise DesignError([Problem(message, key=name)]) from error
+        raise DesignError.of(message, key=name) from error
 
 
-class Open(Collection[str]):
+class Extensible(Collection[str]):
     """Names known here, then those that packages bring in a `group` (see `brought`)."""
 
     _group: str
@@ -92,7 +97,7 @@ class Open(Collection[str]):
         return bool(self._known()) or len(self) > 0
 
 
-class Words(Open):
+class Words(Extensible):
     """The words that a key may be.
 
     Parameters

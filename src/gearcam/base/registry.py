@@ -12,7 +12,7 @@ from functools import partial
 from types import MappingProxyType
 from typing import Any, Generic, Protocol, TypeVar
 
-from gearcam.base.brought import Open, brought, load_brought
+from gearcam.base.brought import Extensible, brought, load_brought
 from gearcam.base.display import cut
 
 
@@ -29,7 +29,7 @@ E = TypeVar("E", bound=Named)
 V = TypeVar("V")
 
 
-class Registry(Open, Mapping[str, E], Generic[E]):
+class Registry(Extensible, Mapping[str, E], Generic[E]):
     """Entries by name, loaded on demand.
 
     Parameters
@@ -84,7 +84,7 @@ def _call(place: str, /, *arguments: Any, **named: Any) -> Any:
     return _imported(place)(*arguments, **named)
 
 
-class OpenMapping(Open, Mapping[str, V], Generic[V]):
+class ExtensibleMapping(Extensible, Mapping[str, V], Generic[V]):
     """A mapping to which other packages may add.
 
     Parameters
@@ -110,7 +110,7 @@ class OpenMapping(Open, Mapping[str, V], Generic[V]):
         return self.own
 
 
-class DeferredMapping(OpenMapping[Any]):
+class DeferredMapping(ExtensibleMapping[Any]):
     """The mapping at a `place`, ``package.module:name``, imported when it is first used.
 
     Parameters

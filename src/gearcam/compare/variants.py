@@ -69,7 +69,7 @@ def settings_of(texts: Sequence[str]) -> dict[str, list[Any]]:
 
 
 def _wrong(message: str, allowed: str = _FORM) -> DesignError:
-    return DesignError([Problem(message, key=_SET, allowed=allowed)])
+    return DesignError.of(message, key=_SET, allowed=allowed)
 
 
 def variants_of(files: Sequence[str], settings: Settings) -> tuple[Variant, ...]:
@@ -97,10 +97,10 @@ def variants_of(files: Sequence[str], settings: Settings) -> tuple[Variant, ...]
     count = len(files) * math.prod(map(len, settings.values()))
     if count < 2:
         allowed = f"two design files or more, or {_SET} with two values or more"
-        raise DesignError([Problem("there is nothing to compare with", allowed=allowed)])
+        raise DesignError.of("there is nothing to compare with", allowed=allowed)
     if count > MOST:
         message, allowed = f"{count} variants are too many to compare", f"at most {MOST}"
-        raise DesignError([Problem(message, allowed=allowed)])
+        raise DesignError.of(message, allowed=allowed)
     designs = [load(file) for file in files]
     _demand_one_kind(designs)
     names = [design.name for design in designs]

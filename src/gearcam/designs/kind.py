@@ -21,7 +21,7 @@ from typing import Any, Final, Protocol, get_args, get_type_hints
 from gearcam.base.brought import brought, group_of, load_brought
 from gearcam.base.findings import CHECKS
 from gearcam.base.quantities import params_of
-from gearcam.base.registry import OpenMapping
+from gearcam.base.registry import ExtensibleMapping
 from gearcam.base.rules import Rule
 from gearcam.designs.faults import Fault
 from gearcam.designs.lines import Path
@@ -209,7 +209,7 @@ class DesignKind:
     nodes: Mapping[str, Node] = field(default_factory=dict)
     circumstances: Callable[[Mapping[str, Any]], Circumstances] = lambda _: {}
     variants: Variants | None = None
-    studies: OpenMapping[Any] = field(default_factory=OpenMapping)
+    studies: ExtensibleMapping[Any] = field(default_factory=ExtensibleMapping)
     required: tuple[str, ...]
     rules: tuple[Rule, ...] = ()
     problems: Callable[[Mapping[str, Any], Examined], Iterable[Fault]] = lambda *_: ()
@@ -261,7 +261,8 @@ class DesignKind:
 
     def titles_with(self, given: Collection[str]) -> list[str]:
         """Return the titles of its own tables, and those of other packages that are `given`."""
-        if any(title not in self.titles for title in given):
+        known = self.titles
+        if any(title not in known for title in given):
             self.take_brought()
         return [title for title in self.tree if title not in self.added or title in given]
 

@@ -9,7 +9,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.base.errors import DesignError, Problem
+from gearcam.base.errors import DesignError
 from gearcam.base.numerals import formatted
 from gearcam.numeric.arrays import Array
 
@@ -37,7 +37,7 @@ def refused(message: str, name: str, value: object, allowed: str) -> DesignError
     -------
     DesignError
     """
-    return DesignError([Problem(message, key=name, value=value, allowed=allowed)])
+    return DesignError.of(message, key=name, value=value, allowed=allowed)
 
 
 def instance(name: str, value: object, types: type[T] | tuple[type[T], ...], allowed: str) -> T:

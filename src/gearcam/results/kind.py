@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 from gearcam.base.brought import group_of
 from gearcam.base.facts import Facts
-from gearcam.base.registry import OpenMapping, deferred
+from gearcam.base.registry import ExtensibleMapping, deferred
 from gearcam.designs import kind as reading
 from gearcam.designs.kind import DesignKind
 
@@ -62,7 +62,7 @@ class Study:
     table : str
         Title of the table of its settings in a design; the command has an option for each key.
     compute : callable
-        ``compute(result, progress)`` tells of its `progress` and returns its outcome, a
+        ``compute(result, progress)`` reports its progress and returns its outcome, a
         `StudyResult`; the settings are those of the design, but for those that a method of its
         results gives by name.
     options : mapping of str to str
@@ -100,9 +100,9 @@ class Study:
         return f'<Study "{self.name}">'
 
 
-def studies_of(kind: str, *studies: Study) -> OpenMapping[Study]:
+def studies_of(kind: str, *studies: Study) -> ExtensibleMapping[Study]:
     """Return the studies of a `kind` of design by name, to which packages may add."""
-    return OpenMapping({one.name: one for one in studies}, group_of(kind, "studies"))
+    return ExtensibleMapping({one.name: one for one in studies}, group_of(kind, "studies"))
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -136,7 +136,7 @@ class Kind(DesignKind):
     charts: Mapping[str, ChartMaker] = field(default_factory=dict)
     scene: Callable[[Any, int], Scene | None] = lambda *_: None
     advice: Callable[[], Any] = _PLAIN_ADVICE
-    studies: OpenMapping[Study] = field(default_factory=OpenMapping[Study])
+    studies: ExtensibleMapping[Study] = field(default_factory=ExtensibleMapping[Study])
     ladders: Mapping[str, Callable[[Any], Any]] = field(default_factory=dict)
     public: Mapping[str, type] = field(default_factory=dict)
     cut: bool = True

@@ -82,7 +82,7 @@ class Server(ThreadingHTTPServer):
     def __init__(self, session: Session, port: int = 0) -> None:
         if not 0 <= port <= _LAST_PORT:
             rule = f"1 to {_LAST_PORT}"
-            raise DesignError([Problem(f"{port} is not a port number", key="--port", allowed=rule)])
+            raise DesignError.of(f"{port} is not a port number", key="--port", allowed=rule)
         self.session = session
         self.token = secrets.token_urlsafe(16)
         try:

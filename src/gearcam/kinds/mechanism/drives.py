@@ -124,7 +124,9 @@ class MachineDrive(WrittenDrive):
         if self.span is not None and self.span[0] >= self.span[1]:
             yield "span", 1, "is not above the first angle", "rising angles"
         if self.slide is not None:
-            yield from _formula_problems(self.slide)
+            from gearcam.laws.formula import formula_problems
+
+            yield from formula_problems("slide", self.slide, "q")
 
     @property
     def shafts(self) -> dict[str, Sort]:
@@ -151,15 +153,6 @@ class MachineDrive(WrittenDrive):
         for word, sort in self.shafts.items():
             for name in self.names_of(word):
                 yield NameUse(name, sort, ("name",))
-
-
-def _formula_problems(text: str) -> Iterator[Breach]:
-    from gearcam.laws.formula_syntax import FormulaError, parse
-
-    try:
-        parse(text, "q")
-    except FormulaError as error:
-        yield error.breach("slide")
 
 
 # --- drives that cannot be the master or replace another one, and keys that they have in vain -----

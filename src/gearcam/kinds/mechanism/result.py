@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.base.errors import ABOVE, DesignError, InfeasibleError, Problem, beyond_limit
+from gearcam.base.errors import ABOVE, DesignError, InfeasibleError, beyond_limit
 from gearcam.base.findings import Finding, in_order, run_checks
 from gearcam.base.numerals import formatted, in_range
 from gearcam.kinds.mechanism.asked import DEG, RATES, TABLES, Amount, Output
@@ -410,7 +410,7 @@ class MechanismResult(Result):
         if beyond.size and not self.linkage.closed:
             allowed = f"{formatted(low, 8)} to {formatted(high, 8)} rad"
             what = "is beyond the master's range"
-            raise DesignError([Problem(what, key="q", value=float(beyond[0]), allowed=allowed)])
+            raise DesignError.of(what, key="q", value=float(beyond[0]), allowed=allowed)
         return where
 
     @cached_property
