@@ -16,10 +16,11 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from gearcam.base.adjustments import Adjustment
 from gearcam.base.numerals import SHORT, told_apart
 
 
@@ -110,27 +111,6 @@ class DesignError(GearcamError, ValueError):
 
 ABOVE = 1.01
 """Factor on a lower limit for the value suggested: rounded to three digits it stays above."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Adjustment:
-    """A change of a design that may remove an error; building it shows whether it does.
-
-    Parameters
-    ----------
-    near : mapping of str to value
-        The smallest change that may help: values by dotted keys of the design file, in its units;
-        empty: the values that the design has.
-    far : mapping of str to value
-        The largest change, with the same keys; empty if `near` is the only one.
-    doubling : bool
-        Whether the first value goes to the far one through powers of two: what is found then does
-        not depend on the value that the design has.
-    """
-
-    near: Mapping[str, object] = field(default_factory=dict)
-    far: Mapping[str, object] = field(default_factory=dict)
-    doubling: bool = False
 
 
 class InfeasibleError(GearcamError, ValueError):

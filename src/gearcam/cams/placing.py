@@ -23,7 +23,8 @@ from typing import Any
 
 import numpy as np
 
-from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
+from gearcam.base.adjustments import Adjustment
+from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.base.numerals import formatted
 from gearcam.cams.followers import Arm, FlatArm, FlatStem, Follower, Round, Stem
 from gearcam.cams.spec import CamSpec, FollowerSpec, PlateFollower

@@ -21,8 +21,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from gearcam.base.adjustments import Adjustment
 from gearcam.base.display import ShortRepr
-from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
+from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.cams.carriers import Carrier
 from gearcam.cams.curve import CamCurve, ProfileSegments
 from gearcam.cams.followers import Follower

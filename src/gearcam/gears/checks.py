@@ -205,7 +205,7 @@ def sharp(subject: CheckedPair, limit: float) -> Iterator[Remark]:
         if modules < limit * (1.0 - ROUNDING):
             yield Remark(
                 f"The centrode has a radius of only {formatted(radius)} mm here. "
-                f"{subject.with_teeth(limit / modules)} the limit is kept.",
+                f"With pair.teeth = {subject.teeth(limit / modules)} or more the limit is kept.",
                 f"wheel {gear.wheel}, {angle_text(place)}",
                 modules,
             )
@@ -222,7 +222,8 @@ def concave_teeth(subject: CheckedPair, limit: float) -> Iterator[Remark]:
         if count < limit and not gear.ring:
             yield Remark(
                 "The teeth are large for this concave part, which has a radius of "
-                f"{formatted(radius)} mm. {subject.with_teeth(limit / count)} the limit is kept.",
+                f"{formatted(radius)} mm. With pair.teeth = {subject.teeth(limit / count)} or more "
+                "the limit is kept.",
                 f"wheel {gear.wheel}, {angle_text(place)}",
                 count,
             )
@@ -399,7 +400,7 @@ def undercut(subject: CheckedPair, limit: float) -> Iterator[Remark]:
             depth = formatted(lost, 4)
             message = f"Undercut removes up to {depth} mm of these flanks at the root; {left}."
         yield Remark(
-            f"{message} {subject.with_teeth(factor)} this wheel has no undercut.",
+            f"{message} With about {subject.teeth(factor)} teeth this wheel has none.",
             f"wheel {gear.wheel}, teeth {tooth_ranges(teeth)}",
             gear.toothing.teeth,
             severity=severity,
@@ -509,11 +510,9 @@ def thin_rim(subject: CheckedPair, limit: float) -> Iterator[Remark]:
             what, hint = "between bore and root", more
             if gear.ring:
                 what = "outside the roots"
-                across = formatted(2.0 * (gear.largest_radius + least), 12)
-                hint = (
-                    f"ring.rim_mm = {formatted(least, 12)} keeps the limit, or for a round outside "
-                )
-                hint += f"ring.outer_diameter_mm = {across}"
+                across = 2.0 * (gear.largest_radius + least)
+                key, size = ("outer_diameter", across) if subject.across else ("rim", least)
+                hint = f"ring.{key}_mm = {formatted(size, 12)} keeps the limit"
             elif largest >= 0.5 * given:
                 hint = (
                     f"a bore up to {rounded_down(largest)} mm across, keyway included, keeps the "

@@ -14,7 +14,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
+from gearcam.base.adjustments import Adjustment
+from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.gears.flank import Curve, Rows, Toothing
 from gearcam.gears.flank_ends import TipEnds
 from gearcam.gears.spec import RingSpec

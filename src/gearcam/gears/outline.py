@@ -12,8 +12,9 @@ from functools import cached_property
 
 import numpy as np
 
+from gearcam.base.adjustments import Adjustment
 from gearcam.base.display import ShortRepr
-from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
+from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.base.numerals import formatted
 from gearcam.base.tolerances import Tolerances
 from gearcam.gears.corners import highest_corners

@@ -10,7 +10,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from gearcam.base.errors import Adjustment, beyond_limit
+from gearcam.base.adjustments import Adjustment
+from gearcam.base.errors import beyond_limit
 from gearcam.base.numerals import formatted, rounded_down
 from gearcam.gears.flank import Toothing
 from gearcam.gears.flank_ends import find_cusps, find_tips

@@ -43,12 +43,15 @@ class CheckedPair(ShortRepr):
         Bore diameters.
     rim : float or None, mm
         Least metal outside the roots of a ring.
+    across : bool
+        Whether the design gives the diameter of its outside, not the metal.
     """
 
     pair: GearPair
     gears: tuple[Gear, Gear]
     bores: tuple[float | None, float | None]
     rim: float | None = None
+    across: bool = False
 
     @property
     def rims(self) -> list[tuple[float, Gear]]:
@@ -60,12 +63,11 @@ class CheckedPair(ShortRepr):
         ]
         return found + ([(self.rim, self.gears[1])] if self.rim is not None else [])
 
-    def with_teeth(self, factor: float) -> str:
-        """Return in words the tooth counts, in the same ratio, that are `factor` times as large."""
+    def teeth(self, factor: float) -> str:
+        """Return the tooth counts, in the same ratio, that are `factor` times as large."""
         common = math.gcd(*self.pair.teeth)
         each = math.ceil(common * factor * (1.0 + ROUNDING))
-        counts = ", ".join(str(count // common * each) for count in self.pair.teeth)
-        return f"With pair.teeth = [{counts}] or more"
+        return f"[{', '.join(str(count // common * each) for count in self.pair.teeth)}]"
 
     @cached_property
     def slopes(self) -> tuple[Array, Array]:

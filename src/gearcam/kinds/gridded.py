@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from bisect import bisect_right
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 import numpy as np
 
+from gearcam.base.adjustments import text_of
 from gearcam.base.errors import ABOVE, InfeasibleError, beyond_limit
 from gearcam.base.findings import Finding, in_order, run_checks
 from gearcam.kinds.shared import turn_in_steps
@@ -26,6 +28,11 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
     from trimesh import Trimesh
 
+    from gearcam.base.adjustments import Changes
+
+
+_STEEP: Final = "pressure-angle"
+"""Code of the finding that names a size."""
 
 STEM: Final = "cam"
 """Stem of the files of the solid."""
@@ -65,6 +72,11 @@ class GriddedCam(Result):
 
     program: Any
     cam: Any
+
+    @property
+    @abstractmethod
+    def flatter(self) -> Changes | None:
+        """The least larger size that keeps the limit of the pressure angle, if any does."""
 
     @property
     @abstractmethod
@@ -171,6 +183,19 @@ class GriddedCam(Result):
             if self.solid_asked and self.carved:
                 found += run_checks(solid, (self.solid_steps, self.chord_error), limits)
             return in_order(found)
+
+    @cached_property
+    def checked(self) -> tuple[Finding, ...]:
+        """Findings of the checks, errors first; one of a pressure angle names a size."""
+        found = self.checked_without_hints
+        if not any(one.code == _STEEP for one in found):
+            return found
+        with self.stage("checks"):
+            changes = self.flatter
+        hint = f" With {text_of(changes)} it keeps the limit." if changes else ""
+        return tuple(
+            replace(one, message=one.message + hint) if one.code == _STEEP else one for one in found
+        )
 
     @property
     def angles(self) -> Array:

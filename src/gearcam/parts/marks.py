@@ -10,7 +10,8 @@ import cmath
 import math
 from typing import Final
 
-from gearcam.base.errors import Adjustment, beyond_limit
+from gearcam.base.adjustments import Adjustment
+from gearcam.base.errors import beyond_limit
 from gearcam.base.numerals import formatted
 from gearcam.parts.body import Mark
 

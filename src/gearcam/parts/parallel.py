@@ -17,7 +17,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearcam.base.errors import Adjustment, InfeasibleError
+from gearcam.base.adjustments import Adjustment
+from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import formatted, rounded_down
 from gearcam.numeric.arrays import Mask, Plane, as_complex, as_pairs
 from gearcam.numeric.contour import Contour, Run

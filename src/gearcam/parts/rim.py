@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.base.errors import Adjustment
+from gearcam.base.adjustments import Adjustment
 from gearcam.base.numerals import formatted, rounded_down
 from gearcam.numeric.arrays import Array, as_pairs
 from gearcam.numeric.contour import Contour

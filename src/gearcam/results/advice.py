@@ -7,7 +7,6 @@ a remedy if neither the design nor one of its files is refused and no error is l
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
@@ -16,23 +15,22 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
-from gearcam.base.changes import (
-    CLOSE,
+from gearcam.base.adjustments import (
     INSIDE,
+    Adjustment,
     Changes,
     ahead,
-    alike,
     between,
     for_both,
     joined,
-    octaves,
-    sized,
+    least,
     text_of,
     tidy,
     together,
+    way,
 )
 from gearcam.base.display import ShortRepr
-from gearcam.base.errors import Adjustment, DesignError, InfeasibleError
+from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.designs.design import Design, document_of, nested_designs, value_at
 from gearcam.designs.faults import dotted
 from gearcam.results.kind import kind_of
@@ -41,6 +39,9 @@ from gearcam.results.nested import keyed
 if TYPE_CHECKING:
     from gearcam.base.findings import Finding
     from gearcam.results.result import Result
+
+_FEW: Final = 2
+"""Remedies that keep the motion from which on others are not sought."""
 
 PATIENCE: Final = 6.0
 """Seconds after which a search ends, on a usual machine."""
@@ -52,8 +53,8 @@ that its answers are the same everywhere."""
 _SLACK: Final = 10.0
 """How many times longer than on a usual machine a search may take: some designs build slowly."""
 
-_STEP: Final = 1.0 / 40.0
-"""Share of a change that is one step of the search."""
+MOST: Final = 4
+"""Largest number of remedies that are offered."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,6 +71,8 @@ class Remedy(ShortRepr):
         Codes of the warnings of the changed design.
     moves : bool
         Whether the changed design moves otherwise: by another law, lift or mean ratio.
+    resized : bool
+        Whether it has another size.
     design : Design
         The changed design.
     """
@@ -78,6 +81,7 @@ class Remedy(ShortRepr):
     less: Changes = field(default_factory=dict)
     remaining: tuple[str, ...] = ()
     moves: bool = False
+    resized: bool = False
     design: Design
 
     @property
@@ -87,18 +91,19 @@ class Remedy(ShortRepr):
 
     @property
     def next_less(self) -> str:
-        """The largest smaller change that is not enough; empty where none was tried."""
+        """What of the largest smaller change is not enough; empty where none was tried."""
         differing = {key: value for key, value in self.less.items() if value != self.changes[key]}
-        return text_of(differing)
+        text = text_of(differing)
+        return text.partition(" = ")[2] if len(differing) == 1 == len(self.changes) else text
 
     @property
     def notes(self) -> str:
-        """What else to know, in brackets: what is not enough, what it changes, what remains."""
+        """What else to know, in brackets: what it changes, what remains, what is not enough."""
         count = len(self.remaining)
         notes = [
-            f"not enough: {self.next_less}" if self.next_less else "",
             "changes the motion" if self.moves else "",
             f"{count} warnings remain" if count > 1 else "1 warning remains" if count else "",
+            f"{self.next_less} is not enough" if self.next_less else "",
         ]
         text = "; ".join(note for note in notes if note)
         return f"({text})" if text else ""
@@ -111,8 +116,8 @@ class Remedies(ShortRepr):
     Parameters
     ----------
     found : tuple of Remedy
-        The remedies; each is enough by itself. Those that keep the motion come first, and of these
-        and the others those with fewer warnings.
+        The remedies, four at most; each is enough by itself. First those that keep motion and
+        size, then those that keep the motion; of each sort first those with fewer warnings.
     tried : tuple of str
         Keys that were changed in the search.
     nearly : mapping of str to tuple of str
@@ -173,8 +178,9 @@ def _sought(
     search.seek()
     if not last:
         search.go_on()
+    order = sorted(search.found, key=lambda one: (one.moves, one.resized, len(one.remaining)))
     return Remedies(
-        found=tuple(sorted(search.found, key=lambda one: (one.moves, len(one.remaining)))),
+        found=tuple(order[:MOST]),
         tried=tuple(search.tried),
         nearly={
             text: tuple(dict.fromkeys(search.seen[text]["error"]))
@@ -239,8 +245,12 @@ class Advice:
         """Return whether a changed `result` is known not to help before it is built completely."""
         return False
 
-    def moves(self, design: Any, other: Any) -> bool:  # noqa: ARG002
-        """Return whether the `other`, changed `design` moves differently."""
+    def moves(self, changes: Changes, design: Any) -> bool:  # noqa: ARG002
+        """Return whether a `design` moves differently with `changes`."""
+        return False
+
+    def resized(self, changes: Changes, design: Any) -> bool:  # noqa: ARG002
+        """Return whether a `design` has another size with `changes`."""
         return False
 
 
@@ -339,11 +349,7 @@ class Search:
             word: tuple(finding.code for finding in findings if finding.severity == word)
             for word in ("error", "warning")
         }
-        return frozenset(
-            finding.code
-            for finding in findings
-            if finding.severity == "error" or finding.code in self.codes
-        )
+        return frozenset(self.seen[text_of(changes)]["error"])
 
     def cures(self, changes: Changes) -> bool:
         """Return whether the changed design builds without errors."""
@@ -357,68 +363,56 @@ class Search:
                 changes=changes,
                 less=less or {},
                 remaining=self.seen[text_of(changes)]["warning"],
-                moves=self.advice.moves(self.result.design, design),
+                moves=self.advice.moves(changes, self.result.design),
+                resized=self.advice.resized(changes, self.result.design),
                 design=design,
             )
         )
 
+    @property
+    def enough(self) -> bool:
+        """Whether as many remedies that keep the motion were found as are offered."""
+        return sum(not one.moves for one in self.found) >= MOST
+
     def along(self, adjustment: Adjustment) -> bool:
-        """Find the smallest change along an adjustment; return whether there is one."""
+        """Find the least change of an adjustment that cures; return whether there is one."""
         if self.over():
             return False
+        changed = adjustment.far or adjustment.near or next(iter(adjustment.steps), {})
+        if self.advice.moves(changed, self.result.design) and len(self.found) >= _FEW:
+            return False
+        if adjustment.steps:
+            steps = adjustment.steps
+            return self._least(lambda place: steps[place - 1], range(1, len(steps) + 1))
+        far = adjustment.far
         near = {
             key: adjustment.near.get(key, value_at(self.document, key))
-            for key in adjustment.far or adjustment.near
+            for key in far or adjustment.near
         }
         if any(value is None for value in near.values()):
             return False
-        if adjustment.far and between(near, adjustment.far, 1.0) == between(near, {}, 0.0):
-            return False  # the design has this value already
         if adjustment.near:
-            first = between(near, adjustment.far, INSIDE) if adjustment.far else tidy(near)
+            first = between(near, far, INSIDE) if far else tidy(near)
             if self.cures(first):
                 self.keep(first)
                 return True
-            if not adjustment.far:
+            if not far:
                 self.first.append(first)
-        better = any(ahead(remedy.changes, near, adjustment.far) for remedy in self.found)
-        least = self._doubled if adjustment.doubling else self._least
-        return bool(adjustment.far) and not better and least(near, adjustment.far)
-
-    def _least(self, near: Changes, far: Changes) -> bool:
-        """Find the smallest change between two ends; return whether there is one."""
-        low, high = 0.0, 1.0
-        while self.over() or not self.cures(between(near, far, high)):
-            high *= 0.5
-            if high < _STEP or self.over():
-                return False
-        while True:
-            ends = [between(near, far, share) for share in (high, low)]
-            fine = high - low <= INSIDE or (high - low <= _STEP and alike(*ends))
-            if fine or self.over():
-                self.keep(ends[0], ends[1] if low else None)
-                return True
-            middle = 0.5 * (low + high)
-            does = self.cures(between(near, far, middle))
-            low, high = (low, middle) if does else (middle, high)
-
-    def _doubled(self, near: Mapping[str, Any], far: Mapping[str, Any]) -> bool:
-        """Find the smallest change through powers of two; return whether there is one."""
-        low = start = float(abs(next(iter(near.values()))))
-        for high in octaves(near, far):
-            if self.over():
-                return False
-            if self.cures(sized(near, far, high)):
-                break
-            low = high
-        else:
+        if not far or any(ahead(remedy.changes, near, far) for remedy in self.found):
             return False
-        while abs(math.log(high / low)) > CLOSE and not self.over():
-            middle = math.sqrt(low * high)
-            does = self.cures(sized(near, far, middle))
-            low, high = (low, middle) if does else (middle, high)
-        self.keep(sized(near, far, high), sized(near, far, low) if low != start else None)
-        return True
+        places, guess = way(near, far, size=adjustment.size), adjustment.guess
+        looks = places.from_guess(guess) if guess else places.looks
+        return self._least(places.at, looks, guessed=bool(guess))
+
+    def _least(
+        self, at: Callable[[int], Changes], looks: Iterable[int], *, guessed: bool = False
+    ) -> bool:
+        """Keep the least of the places that cures; return whether one does (see `least`)."""
+        found = least(lambda place: self.cures(at(place)), looks, guessed=guessed, over=self.over)
+        if found is not None:
+            high, low = found
+            self.keep(at(high), at(low) if low else None)
+        return found is not None
 
     def go_on(self) -> None:
         """Search on from designs that have other errors after one change."""
@@ -445,6 +439,8 @@ class Search:
         Where a changed design is refused for another reason, its adjustments are followed too.
         """
         for adjustment in adjustments:
+            if self.enough:
+                return
             if self.along(adjustment):
                 continue
             if (both := for_both(adjustment)) is not None:

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from gearcam.base.findings import Limits, Remark, check, limit_of
-from gearcam.base.numerals import formatted, shortened
+from gearcam.base.numerals import formatted
 from gearcam.base.quantities import ANGLE, LENGTH, Param
 from gearcam.mechanics.clearance import without_clearance
 from gearcam.spatial.cam import SpatialCam
@@ -90,15 +90,10 @@ def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
     worst, largest = cam.pressure(), pressure_limit(cam, limit)
     if worst is None or worst.value <= largest:
         return
-    hint = ""
-    if isinstance(cam.guide, Straight):
-        radius = cam.program.peaks[0] / math.tan(largest) + cam.outer_radius - cam.inner
-        size = shortened(2.0 * radius, 1.0)
-        hint = f" With cam.outer_diameter_mm = {formatted(size)} it keeps the limit."
     angle = math.degrees(worst.value)
     yield Remark(
         f"The pressure angle reaches {formatted(angle)} deg, {formatted(worst.x, 4)} mm from the "
-        f"axis.{hint}",
+        "axis.",
         at(worst.theta),
         angle,
         limit=math.degrees(largest),

@@ -49,11 +49,9 @@ def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
     worst = cam.pressure
     if worst.value <= limit:
         return
-    size = shortened(cam.reach * (1.0 + cam.program.peaks[0] / math.tan(limit)), 1.0)
     angle = math.degrees(worst.value)
     yield Remark(
-        f"The pressure angle reaches {formatted(angle)} deg. With cam.center_distance_mm = "
-        f"{formatted(size)} it keeps the limit, as it does with a larger index angle.",
+        f"The pressure angle reaches {formatted(angle)} deg. A larger index angle reduces it.",
         worst.place,
         angle,
     )

@@ -11,7 +11,8 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.base.errors import ABOVE, Adjustment, InfeasibleError, beyond_limit
+from gearcam.base.adjustments import Adjustment
+from gearcam.base.errors import ABOVE, InfeasibleError, beyond_limit
 from gearcam.base.numerals import formatted, shortened
 from gearcam.base.quantities import LENGTH
 from gearcam.laws.program import Program

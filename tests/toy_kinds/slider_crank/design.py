@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 
 import gearcam
-from gearcam.base.errors import Adjustment, InfeasibleError
+from gearcam.base.adjustments import Adjustment
+from gearcam.base.errors import InfeasibleError
 from gearcam.base.facts import Fact, Facts, extent
 from gearcam.base.findings import Finding, in_order
 from gearcam.base.quantities import ANGLE, LENGTH, nested, param

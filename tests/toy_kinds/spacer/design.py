@@ -8,7 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from gearcam.base.errors import Adjustment, InfeasibleError
+from gearcam.base.adjustments import Adjustment
+
+from gearcam.base.errors import InfeasibleError
 from gearcam.base.facts import Fact, Facts
 from gearcam.base.findings import Finding
 from gearcam.base.quantities import LENGTH, NUMBER, param

@@ -6,7 +6,9 @@ from typing import Any
 
 import pytest
 
-from gearcam.base.errors import Adjustment, beyond_limit
+from gearcam.base.adjustments import Adjustment
+
+from gearcam.base.errors import beyond_limit
 
 OTHER = Adjustment(near={"rack.addendum": 1})
 

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 import gearcam
-from gearcam.base.changes import between
+from gearcam.base.adjustments import between
 from gearcam.base.errors import InfeasibleError
 from gearcam.console import remedy_lines
 from helpers_remedies import ARM, CIRCLE, ROLLER, cam, followed, job_of, pair

@@ -12,18 +12,21 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.base.errors import Adjustment, DesignError, InfeasibleError
+from gearcam.base.adjustments import Adjustment, Scale, least
+from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.base.findings import CHECKS, Finding, limit_of
 from gearcam.base.numerals import DIGITS, formatted, shortened
 from gearcam.cams.checks import KIND, driven
 from gearcam.designs.design import document_of, value_at
 from gearcam.kinds.cam.motion import by_rows
 from gearcam.kinds.cam.tables import CAM_FORMATS
+from gearcam.kinds.sizes import LARGER, SizeAdvice
 from gearcam.laws.motion_table import MotionTable
 from gearcam.parts.checks import KIND as PARTS_KIND
-from gearcam.results.advice import Advice, kerf_paths
+from gearcam.results.advice import kerf_paths
 
 if TYPE_CHECKING:
+    from gearcam.base.adjustments import Changes
     from gearcam.cams.cam import Cam
     from gearcam.cams.wall import PitchMotion
     from gearcam.kinds.cam.made import MadeCam
@@ -32,8 +35,8 @@ if TYPE_CHECKING:
 _MOST: Final = 100.0
 """Largest radius that is tried, over what the follower needs: its lift, roller and offset."""
 
-_FARTHEST: Final = 0.03
-"""Largest share of a radius by which a larger one is sought."""
+_LOOKS: Final = tuple(2**k for k in range(9))
+"""Where larger radii than the one computed are looked at, in steps of the last digit printed."""
 
 _CLOSER: Final = 1.0 + 1e-4
 """Factor of the least radius that a follower needs."""
@@ -106,48 +109,21 @@ def gentler(result: MadeCam, code: str, number: int = 0) -> dict[str, float] | N
     found = _least(result, motion, code, math.radians(steep.limit or 0.0))
     if found is None:
         return None
+    scale, start = Scale(DIGITS), shortened(found, 1.0)
+
+    def changes(place: int) -> dict[str, float]:
+        return resized(result, number, scale.value(scale.index(start) - 1 + place))
+
+    def keeps(place: int) -> bool:
+        # another size has the same lift
+        other = type(result)(result.solved.with_(changes(place)), result.tolerances)
+        return not any(_steep(result, code, number, other.form.make(result.program)))
+
     try:
-        return _first_that_keeps(result, code, number, shortened(found, 1.0))
+        kept = least(keeps, _LOOKS, guessed=True)
     except (DesignError, InfeasibleError):
         return None
-
-
-def _first_that_keeps(
-    result: MadeCam, code: str, number: int, start: float
-) -> dict[str, float] | None:
-    """Return the changes for the smallest radius, from `start`, mm, in the digits printed."""
-    step = 10.0 ** (math.floor(math.log10(start)) + 1 - DIGITS)
-
-    def tried(count: int) -> tuple[dict[str, float], float]:
-        """Return changes, and the slope of the steepest angle over that of the limit, less 1."""
-        changes = resized(result, number, float(f"{start + count * step:.10g}"))
-        # another size has the same lift
-        other = type(result)(result.solved.with_(changes), result.tolerances)
-        steep = _steep(result, code, number, other.form.make(result.program))
-        slopes = [_slope(one.value) / _slope(one.limit) - 1.0 for one in steep]
-        return changes, max(slopes, default=0.0)
-
-    low, high = -1, 0  # below the start it is too steep
-    changes, excess = tried(high)
-    while excess > 0.0:
-        # slopes fall as the radius grows, about as its inverse
-        low, high = high, high + max(1, math.ceil(excess * start / step))
-        if high > _FARTHEST * start / step:
-            return None
-        changes, excess = tried(high)
-    middle = high - 1
-    while high - low > 1:
-        smaller, excess = tried(middle)
-        if excess > 0.0:
-            low = middle
-        else:
-            high, changes = middle, smaller
-        middle = (low + high) // 2
-    return changes
-
-
-def _slope(angle: float | None) -> float:
-    return math.tan(math.radians(angle or 0.0))
+    return changes(kept[0]) if kept else None
 
 
 def resized(result: MadeCam, number: int, size: float) -> dict[str, float]:
@@ -336,13 +312,6 @@ def _smoother(result: MadeCam, finding: Finding) -> Iterator[str]:
         )
 
 
-_LARGER: Final = 100.0
-"""How far a cam grows in the search, over what its follower and its lift reach."""
-
-_SMALLER: Final = 0.01
-"""How far a roller or a lift shrinks in it, over what is given."""
-
-
 _ALSO: Final[Mapping[str, Callable[[Any], object]]] = {
     "csv": lambda result: result.angles,
     "tool-path": lambda result: result.paths(),
@@ -358,69 +327,61 @@ def _demand(kind: str) -> Callable[[Any], object]:
     return lambda result: (result.profiles, kind in _ALSO and _ALSO[kind](result))
 
 
-class CamAdvice(Advice):
-    """Remedies of cams: changes that a refusal names, then other sizes."""
+class CamAdvice(SizeAdvice):
+    """Remedies of plate cams."""
 
     file_demands = MappingProxyType({kind: _demand(kind) for kind in CAM_FORMATS})
+    larger = (
+        "cam.prime_radius_mm",
+        "cam.base_radius_mm",
+        "cam.prime_radius2_mm",
+        "follower.roller_distance_mm",
+    )
+    smaller = ("follower.roller_radius_mm", "follower.roller2_radius_mm")
 
     def seek(self, search: Search, refusal: InfeasibleError | None) -> None:
-        """Guide a `search` by changes that a `refusal` names, then by other sizes."""
-        if search.result.design.asked:
-            return  # the refusal of a size that is solved for names what has to give
-        first = _walled(search, refusal) if refusal else _of_errors(search)
-        search.follow([*first, *_sizes(search)])
+        """Guide a `search`; the refusal of a size that is solved for names what has to give."""
+        if not search.result.design.asked:
+            super().seek(search, refusal)
 
-    def moves(self, design: Any, other: Any) -> bool:
-        """Return whether the `other` design has another lift than the `design`."""
-        return bool(design.motion != other.motion)
+    def grown(self, document: Mapping[str, Any], key: str, size: float) -> Changes:
+        """Return the changes that give a cam another `size` (see `grown`)."""
+        return grown(document, key, size)
 
+    def farthest(self, search: Search, size: float) -> float:  # noqa: ARG002
+        """Return how far a cam grows: over what its follower and its lift reach."""
+        return LARGER * _reach(search)
 
-def _walled(search: Search, refusal: InfeasibleError) -> Iterator[Adjustment]:
-    """Yield the adjustments of a refusal; a bore begins where its wall is thick enough."""
-    wall = 2.0 * limit_of(PARTS_KIND, "thin-wall", search.result.design.limits)
-    for adjustment in refusal.adjustments:
-        bore = [*adjustment.far] == ["blank.bore_diameter_mm"] and not adjustment.near
-        if bore and refusal.limit is not None and wall < 0.9 * refusal.limit:
-            yield replace(adjustment, near={"blank.bore_diameter_mm": refusal.limit - wall})
-        else:
-            yield adjustment
+    def named(self, search: Search, refusal: InfeasibleError) -> Iterator[Adjustment]:
+        """Yield the adjustments of a `refusal`; a bore begins where its wall is thick enough."""
+        wall = 2.0 * limit_of(PARTS_KIND, "thin-wall", search.result.design.limits)
+        for adjustment in refusal.adjustments:
+            bore = [*adjustment.far] == ["blank.bore_diameter_mm"] and not adjustment.near
+            if bore and refusal.limit is not None and wall < 0.9 * refusal.limit:
+                yield replace(adjustment, near={"blank.bore_diameter_mm": refusal.limit - wall})
+            else:
+                yield adjustment
 
+    def of_errors(self, search: Search) -> Iterator[Adjustment]:
+        """Yield the least radii without jamming, and for a face with the least profile radius.
 
-def _of_errors(search: Search) -> Iterator[Adjustment]:
-    """Yield the smallest radii without jamming, and for a flat face with the least profile radius.
+        The radius of a profile below a flat face is ``base + s + s''``, 0 at the border of
+        undercut.
+        """
+        result: Any = search.result
+        if "jamming" in search.codes:
+            motions = range(len(result.cam.motions))
+            sizes = [gentler(result, "jamming", number) or {} for number in motions]
+            yield Adjustment(near={key: size for one in sizes for key, size in one.items()})
+        if "undercut" in search.codes and (base := result.cam.least_base_radius) is not None:
+            base += limit_of(KIND, "sharp-profile", result.design.limits)
+            yield Adjustment(
+                near=grown(search.document, "cam.base_radius_mm", shortened(base, 1.0))
+            )
 
-    The radius of a profile below a flat face is ``base + s + s''``, 0 at the border of undercut.
-    """
-    result: Any = search.result
-    if "jamming" in search.codes:
-        least = [gentler(result, "jamming", number) for number in range(len(result.cam.motions))]
-        yield Adjustment(
-            near={key: size for changes in least for key, size in (changes or {}).items()}
-        )
-    if "undercut" in search.codes and (base := result.cam.least_base_radius) is not None:
-        base += limit_of(KIND, "sharp-profile", result.design.limits)
-        yield Adjustment(near=grown(search.document, "cam.base_radius_mm", shortened(base, 1.0)))
-
-
-def _sizes(search: Search) -> Iterator[Adjustment]:
-    """Yield adjustments to a larger cam, a smaller roller and smaller lifts."""
-    document, far = search.document, _LARGER * _reach(search)
-    larger = ("cam.prime_radius_mm", "cam.base_radius_mm", "cam.prime_radius2_mm")
-    for key in (*larger, "follower.roller_distance_mm"):
-        if 0.0 < (value_at(document, key) or 0.0) < far:
-            yield Adjustment(far=grown(document, key, far), doubling=True)
-    for key in ("follower.roller_radius_mm", "follower.roller2_radius_mm"):
-        if given := value_at(document, key):
-            yield Adjustment(far={key: _SMALLER * given}, doubling=True)
-    motion = document["motion"]
-    lifts = {
-        f"motion[{number}].{key}": _SMALLER * value
-        for number, phase in enumerate([] if isinstance(motion, dict) else motion)
-        for key, value in phase.items()
-        if key.startswith(("lift_", "to_", "velocity_", "acceleration_")) and value
-    }
-    if lifts:
-        yield Adjustment(far=lifts, doubling=True)
+    def resized(self, changes: Changes, design: Any) -> bool:  # noqa: ARG002
+        """Return whether a `design` has another size with `changes`."""
+        return any(key.startswith("cam.") for key in changes)
 
 
 def _reach(search: Search) -> float:

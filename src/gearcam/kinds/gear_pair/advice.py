@@ -1,38 +1,43 @@
-"""Changes that may help if a gear pair is refused or has errors: teeth, law, edges."""
+"""Changes that may help if a gear pair is refused or has errors: teeth, rack, law, edges."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
-from gearcam.base.errors import Adjustment, InfeasibleError
+import numpy as np
+
+from gearcam.base.adjustments import Adjustment, least
+from gearcam.base.errors import InfeasibleError
 from gearcam.base.findings import limit_of
 from gearcam.designs.design import value_at
+from gearcam.gears.spec import BasicRack
 from gearcam.gears.subject import KIND
 from gearcam.laws.ratio.base import milder
 from gearcam.results.advice import Advice, kerf_paths
 
 if TYPE_CHECKING:
-    from gearcam.results.advice import Changes, Remedy, Search
+    from gearcam.results.advice import Changes, Search
 
-_MOST: Final = 400
-"""Largest number of teeth that is tried."""
-
-_LIKELY: Final = 1.5
-"""How many times more teeth are tried first if the error does not say."""
+_MOST_TIMES: Final = 3
+_FEW_TEETH: Final = 36
+_MOST_TEETH: Final = 400
+"""How many times more teeth are tried, or up to how many; up to how many if a refusal asks."""
 
 _OF_TEETH: Final = frozenset({"contact-ratio", "undercut", "tips-collide"})
-"""Findings that more teeth or a smaller swing of the ratio may remove."""
+"""Findings that other teeth or a smaller swing of the ratio may remove."""
 
-_USUAL: Final = 1.5
-"""How many times more teeth are acceptable with the given addendum."""
+_ANGLES: Final = (20.0, 25.0, 28.0, 30.0)
+"""Pressure angles of tools, deg."""
 
-_TIMES: Final = (1, 2, 4)
-"""Multiples of the wheel's teeth that are tried with a larger ring."""
+_HEIGHTS: Final = (0.9, 0.8)
+_DEPTHS: Final = (1.2, 1.1, 1.0)
+_SHIFTS: Final = (0.2, 0.4)
+"""Addenda and dedenda below the usual ones, and profile shifts, in modules."""
 
 _EDGES: Final = (
     Adjustment(far={"blank.tip_rounding_mm": 0.0}),
@@ -46,35 +51,34 @@ _LOW: Final = 0.3
 _FINE: Final = 0.005
 """Tolerance of the largest addendum at the given tooth counts, in modules."""
 
-_STUB: Final = 0.8
-"""Addendum tried with more teeth, in modules: that of stub teeth."""
+_RINGS: Final = (1, 2, 4)
+"""Multiples of the wheel's teeth that are tried with a larger ring."""
 
-_STEEP: Final = 25.0
-"""Pressure angle, deg, also tried if it is larger than the given one: tips are then narrower."""
-
-_FIRST: Final = 4
-"""Factor of teeth at which stub teeth are tried first, if more teeth alone are not enough."""
+_ROUNDING: Final = 1e-9
+"""Part of a factor of teeth that is rounding."""
 
 
 class PairAdvice(Advice):
-    """Remedies of pairs: tooth numbers, changes that a refusal names, a milder law."""
+    """Remedies of pairs: what a refusal names, another rack, more teeth, a milder law."""
 
     file_demands = MappingProxyType({"dxf": kerf_paths, "cut-svg": kerf_paths})
 
     def seek(self, search: Search, refusal: InfeasibleError | None) -> None:
-        """Guide a `search`: tooth numbers, changes that a `refusal` names, a milder law."""
-        factor = refusal.more_teeth if refusal else _LIKELY * bool(search.codes & _OF_TEETH)
-        collide = "tips-collide" in search.codes
-        if collide:
-            search.follow(_lower(search))
-        lowered = bool(search.found)
-        times = _more_teeth(search, factor) if factor else None
-        if collide and not lowered and (times is None or times > _USUAL):
-            _shorter(search, times)
-            search.found.sort(key=_count)
-        search.follow(
-            [*(refusal.adjustments if refusal else ()), *_others(search, refusal, factor)]
-        )
+        """Guide a `search`, the gentlest changes first."""
+        factor = refusal.more_teeth if refusal else 0.0
+        of_teeth = bool(factor or search.codes & _OF_TEETH)
+        search.follow([*(refusal.adjustments if refusal else ()), *_usual_cutter(search)])
+        if of_teeth:
+            if factor <= _MOST_TIMES:  # no rack cures what needs even more teeth
+                search.follow(_racks(search))
+            search.follow(_more_teeth(search, factor))
+        elif refusal is None:
+            search.follow(_narrower(search))
+        elif not refusal.adjustments:
+            search.follow([*_other_ratios(search), *_EDGES])
+        pair = search.result.design.pair
+        if of_teeth or pair.type == "internal":
+            search.follow(milder(search.result.design.law, pair.teeth[0] / pair.teeth[1]))
         if all(key.startswith("law.") for remedy in search.found for key in remedy.changes):
             any(search.along(step) for step in _larger_ring(search))
 
@@ -84,60 +88,68 @@ class PairAdvice(Advice):
 
         return contact_bound(*result.pair.toothings) < 1.0
 
-    def moves(self, design: Any, other: Any) -> bool:
-        """Return whether the `other` design has another law or mean ratio than the `design`."""
-        (a, b), (z1, z2) = design.pair.teeth, other.pair.teeth
-        return bool(design.law != other.law or a * z2 != b * z1)
+    def moves(self, changes: Changes, design: Any) -> bool:
+        """Return whether a `design` has another law or mean ratio with `changes`."""
+        (a, b), (z1, z2) = design.pair.teeth, changes.get("pair.teeth", design.pair.teeth)
+        return bool(a * z2 != b * z1) or any(key.startswith("law.") for key in changes)
+
+    def resized(self, changes: Changes, design: Any) -> bool:
+        """Return whether a `design` has another centre distance with `changes`."""
+        by_module = design.pair.module is not None and "pair.module_mm" not in changes
+        return by_module and "pair.teeth" in changes
 
 
-def _count(remedy: Remedy) -> int:
-    """Return the sum of the tooth numbers of a remedy."""
-    design: Any = remedy.design
-    return sum(design.pair.teeth)
+def _racks(search: Search) -> Iterator[Adjustment]:
+    """Yield other teeth, as many as before: edges, addendum, dedendum, angle, shift."""
+    rack, given = BasicRack(), search.document["rack"]
+    height, depth = given.get("addendum", rack.addendum), given.get("dedendum", rack.dedendum)
+    if "tips-collide" in search.codes:
+        yield from _lower(search)
+    yield from (one for one in _EDGES if np.any(value_at(search.document, *one.far)))
+    if height < rack.addendum:
+        yield Adjustment(far={"rack.addendum": rack.addendum})
+    angle = given["pressure_angle_deg"]
+    yield _steps("rack.pressure_angle_deg", [one for one in _ANGLES if one > angle])
+    yield _steps("rack.pressure_angle_deg", [one for one in _ANGLES[::-1] if one < angle])
+    yield _steps("rack.dedendum", [one for one in _DEPTHS if height <= one < depth])
+    yield _steps("rack.addendum", [one for one in _HEIGHTS if one < height])
+    if search.document["pair"]["x"]:
+        yield Adjustment(far={"pair.x": 0.0})
+    else:
+        yield _steps("pair.x", _SHIFTS)
+        yield _steps("pair.x", [-one for one in _SHIFTS])
 
 
-def _more_teeth(search: Search, factor: float) -> float | None:
-    """Find the fewest teeth in the same ratio, beginning with `factor` times as many.
+def _steps(key: str, values: Iterable[float]) -> Adjustment:
+    return Adjustment(steps=[{key: value} for value in values])
 
-    Return how many times more they are, None if no number is enough.
+
+def _more_teeth(search: Search, factor: float) -> Iterator[Adjustment]:
+    """Yield more teeth in the same ratio, also with stub teeth and with a smaller module.
+
+    A refusal says `factor` times as many are needed, 0 if it does not say.
     """
-    given: tuple[int, int] = search.result.design.pair.teeth
-    common = math.gcd(*given)
+    design = search.result.design
+    given: tuple[int, int] = design.pair.teeth
+    common, before = math.gcd(*given), len(search.found)
 
-    def teeth(k: int) -> Changes:
-        return {"pair.teeth": [count // common * k for count in given]}
+    def teeth(k: float) -> dict[str, list[int]]:
+        return {"pair.teeth": [count // common * math.ceil(k) for count in given]}
 
-    low, most = common, _MOST * common // max(given)
-    # the number that an error names is enough, and may be beyond the largest that is tried
-    high = max(low + 1, min(math.ceil(low * factor * (1.0 - 1e-9)), most))
-    while high <= most and not search.over() and not search.cures(teeth(high)):
-        low, high = high, min(2 * high, most) if high < most else most + 1
-    if high > most or search.over():
-        return None
-    middle = high - 1  # the first number is often right
-    while high - low > 1 and not search.over():
-        low, high = (low, middle) if search.cures(teeth(middle)) else (middle, high)
-        middle = (low + high) // 2
-    search.keep(teeth(high), teeth(low))
-    module = search.result.design.pair.module
-    if module is not None and not search.over():
-        small = {"pair.module_mm": float(f"{module * common / high:.6g}")}
-        if search.cures({**teeth(high), **small}):
-            search.keep({**teeth(high), **small})
-    return high / common
-
-
-def _others(search: Search, refusal: InfeasibleError | None, factor: float) -> Iterator[Adjustment]:
-    """Yield adjustments other than more teeth and those that a refusal names."""
-    yield from _usual_cutter(search)
-    if refusal is None:
-        yield from _of_errors(search)
-    elif not refusal.adjustments and not factor:
-        yield from _other_ratios(search)
-        yield from _EDGES
-    if factor or search.result.design.pair.type == "internal":
-        z1, z2 = search.result.design.pair.teeth
-        yield from milder(search.result.design.law, z1 / z2)
+    named = common * factor * (1.0 - _ROUNDING)
+    many = max(_MOST_TIMES * max(given), _MOST_TEETH if factor else _FEW_TEETH)
+    most = many * common // max(given)
+    yield Adjustment(
+        far=teeth(most), guess=teeth(min(max(common + 1, named), most)) if factor else {}
+    )
+    more = search.found[before:]
+    if more and design.pair.module is not None:
+        counts = more[0].changes["pair.teeth"]
+        module = float(f"{design.pair.module * given[0] / counts[0]:.6g}")  # type: ignore[index]
+        yield Adjustment(steps=[{"pair.teeth": counts, "pair.module_mm": module}])
+    if "tips-collide" in search.codes:
+        stub = {"rack.addendum": _HEIGHTS[-1]}
+        yield Adjustment(near=teeth(common) | stub, far=teeth(most) | stub)
 
 
 def _lower(search: Search) -> Iterator[Adjustment]:
@@ -152,42 +164,11 @@ def _lower(search: Search) -> Iterator[Adjustment]:
             return False
         return found is None or found.margin >= limit
 
-    low, high = round(_LOW / _FINE), math.floor(result.pair.rack.addendum / _FINE)
-    if low >= high or not passes(_LOW):
-        return
-    while high - low > 1 and not search.over():
-        middle = (low + high) // 2
-        low, high = (middle, high) if passes(middle * _FINE) else (low, middle)
-    yield Adjustment(near={"rack.addendum": low * _FINE})
-
-
-def _shorter(search: Search, times: float | None) -> None:
-    """Find the fewest stub teeth, also with a larger pressure angle.
-
-    Enough with the given addendum are `times` as many teeth; None if no number is.
-    """
-    result: Any = search.result
-    given: tuple[int, int] = result.design.pair.teeth
-    rack, common = result.pair.rack, math.gcd(*given)
-    if rack.addendum <= _STUB:
-        return
-    angles: list[Changes] = [{}]
-    if math.degrees(rack.pressure_angle) < _STEEP:
-        angles.append({"rack.pressure_angle_deg": _STEEP})
-    for angle in angles:
-        # without another angle no addendum suffices at the given tooth counts
-        low, high = common - bool(angle), round((times or _FIRST) * common)
-
-        def stub(k: int, angle: Changes = angle) -> Changes:
-            counts = {"pair.teeth": [count // common * k for count in given]} if k > common else {}
-            return {**counts, "rack.addendum": _STUB, **angle}
-
-        if not search.cures(stub(high)):
-            continue
-        while high - low > 1 and not search.over():
-            middle = (low + high) // 2
-            low, high = (low, middle) if search.cures(stub(middle)) else (middle, high)
-        search.keep(stub(high), stub(low) if low >= common else None)
+    top, bottom = math.floor(result.pair.rack.addendum / _FINE), round(_LOW / _FINE)
+    looks = [top - bottom] if top > bottom else []
+    found = least(lambda less: passes((top - less) * _FINE), looks, over=search.over)
+    if found is not None:
+        yield Adjustment(near={"rack.addendum": (top - found[0]) * _FINE})
 
 
 def _larger_ring(search: Search) -> Iterator[Adjustment]:
@@ -195,7 +176,7 @@ def _larger_ring(search: Search) -> Iterator[Adjustment]:
     pair = search.result.design.pair
     z1, z2 = pair.teeth
     if pair.type == "internal" and z1 < z2:
-        for times in _TIMES:
+        for times in _RINGS:
             yield Adjustment(near={"pair.teeth": [times * z1, (z2 // z1 + 1) * times * z1]})
 
 
@@ -221,16 +202,9 @@ def _other_ratios(search: Search) -> Iterator[Adjustment]:
         yield Adjustment(near={"pair.teeth": [max(1, round(z1 / z2)) * z2, z2]})
 
 
-def _of_errors(search: Search) -> Iterator[Adjustment]:
-    """Yield adjustments for findings of a pair that are errors."""
-    addendum = value_at(search.document, "rack.addendum")
-    if search.codes & _OF_TEETH and addendum is not None and addendum < 1.0:
-        yield Adjustment(far={"rack.addendum": 1.0})
-    if search.codes & _OF_TEETH:
-        if search.document["pair"]["x"]:
-            yield Adjustment(far={"pair.x": 0.0})
-        yield from _EDGES
+def _narrower(search: Search) -> Iterator[Adjustment]:
+    """Yield a narrower kerf where one is too wide."""
+    kerfs = [one for one in search.result.checked if one.code == "wide-kerf"]
+    widest = min((one.limit for one in kerfs if one.limit is not None), default=None)
     if "wide-kerf" in search.codes:
-        kerfs = [one for one in search.result.checked if one.code == "wide-kerf"]
-        widest = min(one.limit for one in kerfs if one.limit is not None)
         yield Adjustment(near={"output.kerf_mm": widest}, far={"output.kerf_mm": 0.0})

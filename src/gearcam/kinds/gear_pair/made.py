@@ -8,7 +8,8 @@ from contextlib import suppress
 from functools import cached_property
 from typing import TYPE_CHECKING, Final, TypeAlias
 
-from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
+from gearcam.base.adjustments import Adjustment
+from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.base.findings import limit_of
 from gearcam.base.numerals import formatted
 from gearcam.gears.pair import Gear, GearPair, leads, lobes_of, make_gear, make_pair, stepped
@@ -146,7 +147,10 @@ class MadePair(PartsResult):
         rim = None
         if gears[1].ring:
             rim = self.design.ring.least_rim(gears[1].largest_radius, self.pair.module)
-        return CheckedPair(pair=gears[0].pair, gears=gears, bores=self.bores, rim=rim)
+        across = self.design.ring.outer_diameter is not None
+        return CheckedPair(
+            pair=gears[0].pair, gears=gears, bores=self.bores, rim=rim, across=across
+        )
 
     @cached_property
     def parts_subject(self) -> CheckedParts:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
+from gearcam.base.adjustments import Adjustment
+from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.base.findings import limit_of
 from gearcam.base.numerals import formatted
 from gearcam.gears.estimates import pair_errors

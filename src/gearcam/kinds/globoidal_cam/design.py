@@ -172,5 +172,6 @@ KIND: Final = Kind(
     scene=deferred(f"{_HERE}.drawn:scene"),
     studies=STUDIES,
     ladders=DeferredMapping(f"{_HERE}.shown:LADDERS"),
+    advice=deferred(f"{_HERE}.advice:GloboidalAdvice"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
 )

@@ -9,7 +9,10 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.base.findings import Finding
+from gearcam.base.adjustments import Scale, least
+from gearcam.base.errors import DesignError, InfeasibleError
+from gearcam.base.findings import Finding, limit_of
+from gearcam.base.numerals import DIGITS
 from gearcam.designs.outputs import MESHES
 from gearcam.kinds.globoidal_cam.design import GloboidalCamDesign
 from gearcam.kinds.gridded import ROUND, SAGITTA, STEM, GriddedCam
@@ -30,11 +33,15 @@ from gearcam.spatial.globoidal_surface import (
 )
 
 if TYPE_CHECKING:
+    from gearcam.base.adjustments import Changes
     from gearcam.numeric.arrays import Array
     from gearcam.numeric.pose import SpacePose
 
 TURRET: Final = "turret"
 """Name of its solid."""
+
+_LOOKS: Final = (1, 2, 4, 8, 16)
+"""Where larger distances than the computed one are looked at, in steps of the last digit."""
 
 _SHOWN: Final = 360
 """Largest number of cam angles of a solid that is only looked at."""
@@ -78,11 +85,36 @@ class GloboidalCamResult(GriddedCam):
             return make_globoidal(program, design.turret, design.cam, design.blank.bore)
 
     @cached_property
-    def checked(self) -> tuple[Finding, ...]:
-        """Findings of the checks, errors first."""
+    def checked_without_hints(self) -> tuple[Finding, ...]:
+        """Findings of the checks (see `Result.checked_without_hints`)."""
         from gearcam.spatial.globoidal_checks import KIND, SOLID
 
         return self.findings_of(KIND, SOLID, (self.cam, self.design.blank.bore))
+
+    @cached_property
+    def flatter(self) -> Changes | None:
+        """The least larger centre distance that keeps the limit (see `GriddedCam.flatter`)."""
+        from gearcam.spatial.globoidal_checks import KIND
+
+        limit, cam, scale = (
+            limit_of(KIND, "pressure-angle", self.design.limits),
+            self.cam,
+            Scale(DIGITS),
+        )
+        start = scale.index(cam.reach * (1.0 + cam.program.peaks[0] / math.tan(limit)))
+
+        def changed(place: int) -> dict[str, float]:
+            return {"cam.center_distance_mm": scale.value(start + place)}
+
+        def keeps(place: int) -> bool:
+            try:
+                other = type(self)(self.design.with_(changed(place)), self.tolerances)
+                return other.cam.pressure.value <= limit
+            except (DesignError, InfeasibleError):
+                return False
+
+        found = least(keeps, _LOOKS, guessed=True)
+        return changed(found[0]) if found else None
 
     @property
     def places(self) -> dict[str, float]:

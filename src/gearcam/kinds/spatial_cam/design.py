@@ -197,5 +197,6 @@ KIND: Final = Kind(
     scene=deferred(f"{_HERE}.drawn:scene"),
     studies=STUDIES,
     ladders=DeferredMapping(f"{_HERE}.studies:LADDERS"),
+    advice=deferred(f"{_HERE}.advice:SpatialAdvice"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
 )

@@ -37,6 +37,7 @@ from gearcam.spatial.surface import (
 )
 
 if TYPE_CHECKING:
+    from gearcam.base.adjustments import Changes
     from gearcam.numeric.pose import SpacePose
     from gearcam.parts.bands import BandedBody
     from gearcam.spatial.milling import RotaryPath
@@ -130,11 +131,21 @@ class SpatialCamResult(GriddedCam):
         return TableRows(design=self.design, oscillating=self.design.follower.oscillating)
 
     @cached_property
-    def checked(self) -> tuple[Finding, ...]:
-        """Findings of the checks, errors first."""
+    def checked_without_hints(self) -> tuple[Finding, ...]:
+        """Findings of the checks (see `Result.checked_without_hints`)."""
         from gearcam.spatial.checks import KIND, SOLID
 
         return self.findings_of(KIND, SOLID, (self.cam, self.blank))
+
+    @cached_property
+    def flatter(self) -> Changes | None:
+        """The least larger diameter that keeps the limit (see `GriddedCam.flatter`)."""
+        from gearcam.spatial.sizing import flat_diameter
+
+        design = self.solved
+        bore, limits = design.blank.bore, design.limits
+        size = flat_diameter(self.program, design.follower, design.cam, bore, limits)
+        return None if size is None else {"cam.outer_diameter_mm": size}
 
     def motion(self, theta: ArrayLike | None = None) -> Columns:
         """Return the motion of the follower and the pressure angles.

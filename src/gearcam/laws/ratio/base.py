@@ -17,8 +17,9 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gearcam.base.adjustments import Adjustment
 from gearcam.base.display import ShortRepr
-from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
+from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import params_of
 from gearcam.base.tolerances import Tolerances

@@ -10,8 +10,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final, TypeVar
 
+from gearcam.base.adjustments import Adjustment
 from gearcam.base.display import ShortRepr
-from gearcam.base.errors import Adjustment, beyond_limit
+from gearcam.base.errors import beyond_limit
 from gearcam.base.quantities import ANGLE, COUNT, NUMBER, Solve, param
 from gearcam.base.rules import Breach, exactly_one
 from gearcam.base.tolerances import Tolerances

@@ -15,8 +15,9 @@ from typing import Any, Final
 
 import numpy as np
 
+from gearcam.base.adjustments import Adjustment
 from gearcam.base.display import ShortRepr
-from gearcam.base.errors import Adjustment, beyond_limit
+from gearcam.base.errors import beyond_limit
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import (
     ANGLE,

@@ -15,7 +15,8 @@ from typing import Any, ClassVar, Final
 
 import numpy as np
 
-from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
+from gearcam.base.adjustments import Adjustment
+from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.base.numerals import formatted, rounds_to
 from gearcam.base.quantities import ANGLE, Solve, param
 from gearcam.base.rules import together

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import gearcam as gc
-from gearcam.base.errors import Adjustment
+from gearcam.base.adjustments import Adjustment
 from gearcam.cli import main
 from gearcam.designs.writing import toml_text
 from helpers_sampling import few

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
-from gearcam.base.errors import Adjustment, beyond_limit
+from gearcam.base.adjustments import Adjustment
+from gearcam.base.errors import beyond_limit
 from gearcam.base.facts import Fact
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import fixed

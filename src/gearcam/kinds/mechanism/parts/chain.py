@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.base.errors import Adjustment, InfeasibleError
+from gearcam.base.adjustments import Adjustment
+from gearcam.base.errors import InfeasibleError
 from gearcam.base.facts import Fact
 from gearcam.base.findings import Remark, check
 from gearcam.base.numerals import formatted

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.base.errors import Adjustment, InfeasibleError
+from gearcam.base.adjustments import Adjustment
+from gearcam.base.errors import InfeasibleError
 from gearcam.base.facts import Fact
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import COUNT, LENGTH, LONGEST, TEXT, param
