@@ -36,10 +36,10 @@
   }
 
   // Search for changes with which the refused design can be made, and offer them.
-  async function remedy(changes, turn) {
+  async function remedy(changes, last, turn) {
     const place = document.querySelector("#error div");
     place.textContent = "Searching for remedies.";
-    const { found, lines, stale } = await post("remedies", { changes });
+    const { found, lines, stale } = await post("remedies", { changes, last });
     if (stale || turn !== arrived) return;
     if (!found?.length) {
       place.textContent = lines ?? "";
@@ -96,7 +96,7 @@
       if (!reply.stale && turn > arrived && from === made) {
         arrived = turn;
         take(reply, asked.last);
-        if (reply.refused && asked.exact) remedy(asked.changes, turn).catch(ended);
+        if (reply.refused && asked.exact) remedy(reply.changes, asked.last, turn).catch(ended);
       }
     } catch {
       ended();

@@ -215,7 +215,7 @@ class Session:
         Parameters
         ----------
         asked : mapping
-            ``changes``.
+            ``changes``, and ``last``, the key of that of which no remedy undoes the change.
 
         Returns
         -------
@@ -228,8 +228,10 @@ class Session:
             If ``changes`` are not numbers of the file.
         """
         text = replaced(self.state.text, _values(asked.get("changes"), self.state))
+        last, given = asked.get("last"), numbers(self.state.text)
+        before = {last: given[last]} if last in given else None
         return self._search.run(
-            lambda: _result(self._workers.submit(work.seek, text, self.file), self.file)
+            lambda: _result(self._workers.submit(work.seek, text, self.file, before), self.file)
         )
 
     def solids(self, asked: Mapping[str, Any]) -> dict[str, Any] | None:

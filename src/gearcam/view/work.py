@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any, Final
 
 from gearcam import build, remedies
@@ -76,7 +77,7 @@ def show_draft(content: bytes | None, file: str) -> Reply:
     return _reply(lambda: {"document": _draft(loads(_text(content, file), file=file))}, file)
 
 
-def seek(text: str, file: str) -> Reply:
+def seek(text: str, file: str, before: Values | None = None) -> Reply:
     """Search for remedies of a design that is refused.
 
     Parameters
@@ -85,6 +86,8 @@ def seek(text: str, file: str) -> Reply:
         Of its file.
     file : str
         Its name.
+    before : mapping of str to float, optional
+        What a changed number was, by its key: no remedy undoes the change.
 
     Returns
     -------
@@ -94,7 +97,9 @@ def seek(text: str, file: str) -> Reply:
     """
 
     def answer() -> Reply:
-        sought = remedies(build(loads(text, file=file)))
+        sought, old = remedies(build(loads(text, file=file))), (before or {}).items()
+        kept = tuple(one for one in sought.found if not old <= _items(one.changes).items())
+        sought = sought if not old else replace(sought, found=kept)
         found = [
             {"text": one.text, "notes": one.notes, "changes": dict(one.changes)}
             for one in sought.found
@@ -145,7 +150,8 @@ def follow(text: str, file: str, changes: Values, last: str, exact: bool) -> byt
     Returns
     -------
     bytes
-        A reply as JSON, with all ``changes`` that were made.
+        A reply as JSON, with all ``changes`` that were made; of a refused design with those with
+        which it was refused last, and so for its true cause.
     """
 
     def answer(values: Values) -> Reply:
@@ -153,29 +159,35 @@ def follow(text: str, file: str, changes: Values, last: str, exact: bool) -> byt
         content = document(build(design)) if exact else _draft(design)
         return {"document": content, "changes": dict(values)}
 
-    reply = _reply(lambda: _first(text, changes, last, answer), file)
+    reply = _reply(lambda: _first(text, changes, last, answer, file), file)
     return json.dumps(reply, ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode()
 
 
-def _first(text: str, changes: Values, last: str, answer: Callable[[Values], Reply]) -> Reply:
+def _first(
+    text: str, changes: Values, last: str, answer: Callable[[Values], Reply], file: str
+) -> Reply:
     """Return the reply for the changes alone or, if refused, together with required ones."""
     values = numbers(text)
-    refusals: list[DesignError | InfeasibleError] = []
-    for more in ({}, equals(values, last, changes[last])):
-        if more or not refusals:
-            try:
-                return answer({**changes, **more})
-            except (DesignError, InfeasibleError) as error:
-                refusals.append(error)
-    for way in (way for error in refusals for way in getattr(error, "adjustments", ())):
-        near = _items(way.near)
-        if near and last not in near and near.keys() <= values.keys():
-            equal = equals(values, last, changes[last]) if len(refusals) > 1 else {}
-            try:
-                return answer({**changes, **equal, **near})
-            except (DesignError, InfeasibleError):
-                break
-    raise refusals[0]
+    equal = equals(values, last, changes[last])
+    refusals: list[tuple[Values, DesignError | InfeasibleError]] = []
+
+    def tried(more: Values) -> Reply | None:
+        try:
+            return answer({**changes, **more})
+        except (DesignError, InfeasibleError) as error:
+            refusals.append((more, error))
+            return None
+
+    reply = tried({}) or (tried(equal) if equal else None)
+    for more, error in () if reply else tuple(refusals):
+        ways = (_items(way.near) for way in getattr(error, "adjustments", ()))
+        fit = (way for way in ways if way and last not in way and way.keys() <= values.keys())
+        near = next(fit, None)
+        reply = reply or (tried({**more, **near}) if near else None)
+    if reply:
+        return reply
+    more, error = refusals[-1]
+    return {**_refusal(error, file), "changes": {**changes, **more}}
 
 
 def _items(near: Mapping[str, Any]) -> dict[str, Any]:
@@ -206,9 +218,14 @@ def _reply(work: Callable[[], Reply], file: str) -> Reply:
     try:
         return {"error": "", **work()}
     except (DesignError, InfeasibleError) as error:
-        refused = isinstance(error, InfeasibleError)
-        return {"error": refusal_text(error, file, _DONE), "refused": refused}
+        return _refusal(error, file)
     except GearcamError as error:
         return {"error": f"{file}: {error}"}
     except Exception as error:
         return {"error": fault_text(error, file)}
+
+
+def _refusal(error: DesignError | InfeasibleError, file: str) -> Reply:
+    """Return the reply for a design that is not valid or cannot be made."""
+    refused = isinstance(error, InfeasibleError)
+    return {"error": refusal_text(error, file, _DONE), "refused": refused}

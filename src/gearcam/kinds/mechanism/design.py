@@ -263,6 +263,7 @@ KIND: Final = Kind(
     scene=deferred(f"{_HERE}.drawn:scene"),
     studies=STUDIES,
     ladders=DeferredMapping(f"{_HERE}.drawn:LADDERS"),
+    advice=deferred(f"{_HERE}.advice:MechanismAdvice"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
     brought=group_of(NAME, "parts"),
     cut=False,

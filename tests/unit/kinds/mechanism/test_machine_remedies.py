@@ -40,7 +40,7 @@ def test_a_rod_too_short_is_offered_lengths_that_build() -> None:
 def test_where_one_length_cannot_do_it_two_are_named() -> None:
     told = refusal({"dyad[0].lengths_mm": [10, 20]})
     assert told.limit is None
-    assert "one length alone cannot do it" in str(told)
+    assert "neither length alone does it" in str(told)
     (way,) = told.adjustments
     both = gc.build(FOUR_BAR.with_(way.near))
     assert both.linkage.closed

@@ -250,7 +250,7 @@ class DyadSpec(MachinePart):
             told = " and ".join(
                 f"{key} = {formatted(value)} ({name})" for (key, value), name in both
             )
-            note = f"one length alone cannot do it; with {told} it closes"
+            note = f"neither length alone does it; with {told} it closes"
             return InfeasibleError(what, where=where, nearest=note, adjustments=ways)
         ((key, value),), (k,) = near.items(), error.nearest[0]
         return InfeasibleError(

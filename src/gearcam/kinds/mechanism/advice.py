@@ -1,0 +1,37 @@
+"""What helps a mechanism that is refused: changes that the refusal names, then shorter cranks."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+from gearcam.base.adjustments import Adjustment
+from gearcam.results.advice import Advice
+
+if TYPE_CHECKING:
+    from gearcam.base.adjustments import Changes
+    from gearcam.base.errors import InfeasibleError
+    from gearcam.results.advice import Search
+
+_SHORTEST: Final = 0.05
+"""How much of a crank is left in the search."""
+
+_STILL: Final = ("output.", "limits.", "torque.")
+"""Beginnings of keys that change no motion."""
+
+
+class MechanismAdvice(Advice):
+    """Remedies of mechanisms."""
+
+    def seek(self, search: Search, refusal: InfeasibleError | None) -> None:
+        """Guide a `search`; a loop that does not close may do so with a shorter crank."""
+        super().seek(search, refusal)
+        cranks = search.document.get("crank", ())
+        if refusal is not None and refusal.where.startswith("dyad["):
+            keys = {f"crank[{k}].length_mm": one["length_mm"] for k, one in enumerate(cranks)}
+            search.follow(
+                Adjustment(far={key: _SHORTEST * length}, size=True) for key, length in keys.items()
+            )
+
+    def moves(self, changes: Changes, design: Any) -> bool:  # noqa: ARG002
+        """Return whether a `design` moves differently with `changes`."""
+        return not all(key.startswith(_STILL) for key in changes)
