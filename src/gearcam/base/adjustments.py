@@ -223,9 +223,16 @@ def way(near: Changes, far: Changes, *, size: bool = False) -> Way:
 
 
 def between(near: Changes, far: Changes, share: float, *, size: bool = False) -> Changes:
-    """Return values at a `share` of the way from `near` to `far`, rounded towards `far`.
+    """Return values on the way between two ends, rounded towards the far one.
 
-    Sizes are rounded to four digits, others to a thousandth of the way or less.
+    Parameters
+    ----------
+    near, far : mapping of str to value
+        See `Way`.
+    share : float
+        How far they are on the way, from 0 to 1.
+    size : bool
+        Whether they are rounded to four digits, or to a thousandth of the way or less.
     """
     return {key: _mixed(value, far.get(key, value), share, size) for key, value in near.items()}
 

@@ -40,7 +40,7 @@ class SizeAdvice(Advice):
         search.follow([*named, *self.sizes(search), *self.milder(search.document)])
 
     def named(self, search: Search, refusal: InfeasibleError) -> Iterator[Adjustment]:  # noqa: ARG002
-        """Yield the adjustments that a `refusal` names."""
+        """Yield the adjustments that a `refusal` names in a `search`."""
         yield from refusal.adjustments
 
     def of_errors(self, search: Search) -> Iterator[Adjustment]:  # noqa: ARG002
@@ -48,11 +48,11 @@ class SizeAdvice(Advice):
         yield from ()
 
     def grown(self, document: Mapping[str, Any], key: str, size: float) -> Changes:  # noqa: ARG002
-        """Return the changes that give a cam another `size`, by its key."""
+        """Return the changes that give the cam of a `document` another `size` at its `key`."""
         return {key: size}
 
     def farthest(self, search: Search, size: float) -> float:  # noqa: ARG002
-        """Return up to which size, mm, a cam of a `size` grows."""
+        """Return up to which size, mm, a cam of a `size` is made in a `search`."""
         return min(LARGER * size, LONGEST)
 
     def sizes(self, search: Search) -> Iterator[Adjustment]:

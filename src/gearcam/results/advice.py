@@ -91,19 +91,19 @@ class Remedy(ShortRepr):
 
     @property
     def next_less(self) -> str:
-        """What of the largest smaller change is not enough; empty where none was tried."""
+        """What still fails of the largest smaller change; empty where none was tried."""
         differing = {key: value for key, value in self.less.items() if value != self.changes[key]}
         text = text_of(differing)
         return text.partition(" = ")[2] if len(differing) == 1 == len(self.changes) else text
 
     @property
     def notes(self) -> str:
-        """What else to know, in brackets: what it changes, what remains, what is not enough."""
+        """What else to know, in brackets: what it changes, what remains, what still fails."""
         count = len(self.remaining)
         notes = [
             "changes the motion" if self.moves else "",
             f"{count} warnings remain" if count > 1 else "1 warning remains" if count else "",
-            f"{self.next_less} is not enough" if self.next_less else "",
+            f"{self.next_less} still fails" if self.next_less else "",
         ]
         text = "; ".join(note for note in notes if note)
         return f"({text})" if text else ""

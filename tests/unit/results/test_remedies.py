@@ -101,13 +101,13 @@ def test_what_a_search_names_is_true_when_followed(name: str, folder: Path) -> N
             assert a * z2 == b * z1
         made = job_of(followed(document, remedy.changes), folder)
         assert not {finding.code for finding in made.findings if finding.severity == "error"}
-        assert not {finding.code for finding in made.findings} & before
         warnings = tuple(one.code for one in made.findings if one.severity == "warning")
         assert remedy.remaining == warnings
         assert remedy.moves == moved(document, remedy.changes)
         assert remedy.design.name == document["name"]
-    order = [(remedy.moves, len(remedy.remaining)) for remedy in found.found]
+    order = [(remedy.moves, remedy.resized, len(remedy.remaining)) for remedy in found.found]
     assert order == sorted(order)
+    assert len(order) <= 4
 
 
 @pytest.mark.parametrize(
@@ -116,13 +116,8 @@ def test_what_a_search_names_is_true_when_followed(name: str, folder: Path) -> N
 def test_the_next_smaller_change_does_not_do(name: str, folder: Path) -> None:
     document, _ = DESIGNS[name]
     smaller = [remedy.less for remedy in search(name, folder).found if remedy.less]
-    before = errors(document, folder)
     for less in smaller:
-        made = followed(document, less)
-        found = errors(made, folder)
-        if not found:
-            found = {finding.code for finding in job_of(made, folder).findings} & before
-        assert found
+        assert errors(followed(document, less), folder)
     assert smaller or name == "bore"
 
 
@@ -161,7 +156,7 @@ def test_remedies_of_both_wheels_are_nearly_the_least(folder: Path) -> None:
 
 def told_teeth(message: str) -> list[int]:
     """The tooth counts that a warning names."""
-    found = re.search(r"With pair\.teeth = \[(\d+), (\d+)\] or more", message)
+    found = re.search(r"With (?:pair\.teeth = |about )\[(\d+), (\d+)\]", message)
     assert found, message
     return [int(count) for count in found.groups()]
 

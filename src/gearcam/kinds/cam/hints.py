@@ -349,11 +349,11 @@ class CamAdvice(SizeAdvice):
         return grown(document, key, size)
 
     def farthest(self, search: Search, size: float) -> float:  # noqa: ARG002
-        """Return how far a cam grows: over what its follower and its lift reach."""
+        """Return up to which `size`, mm, a cam is made in a `search`: by follower and lift."""
         return LARGER * _reach(search)
 
     def named(self, search: Search, refusal: InfeasibleError) -> Iterator[Adjustment]:
-        """Yield the adjustments of a `refusal`; a bore begins where its wall is thick enough."""
+        """Yield what a `refusal` names in a `search`; a bore leaves a wall that is thick enough."""
         wall = 2.0 * limit_of(PARTS_KIND, "thin-wall", search.result.design.limits)
         for adjustment in refusal.adjustments:
             bore = [*adjustment.far] == ["blank.bore_diameter_mm"] and not adjustment.near

@@ -64,7 +64,7 @@ class PairAdvice(Advice):
     file_demands = MappingProxyType({"dxf": kerf_paths, "cut-svg": kerf_paths})
 
     def seek(self, search: Search, refusal: InfeasibleError | None) -> None:
-        """Guide a `search`, the gentlest changes first."""
+        """Guide a `search` for remedies of a `refusal`, the gentlest changes first."""
         factor = refusal.more_teeth if refusal else 0.0
         of_teeth = bool(factor or search.codes & _OF_TEETH)
         search.follow([*(refusal.adjustments if refusal else ()), *_usual_cutter(search)])

@@ -23,7 +23,7 @@ class MechanismAdvice(Advice):
     """Remedies of mechanisms."""
 
     def seek(self, search: Search, refusal: InfeasibleError | None) -> None:
-        """Guide a `search`; a loop that does not close may do so with a shorter crank."""
+        """Guide a `search`; a `refusal` of a loop to close may end with a shorter crank."""
         super().seek(search, refusal)
         cranks = search.document.get("crank", ())
         if refusal is not None and refusal.where.startswith("dyad["):
