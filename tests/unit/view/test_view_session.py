@@ -14,7 +14,8 @@ from typing import Any
 
 import pytest
 
-from gearcam.base.errors import DesignError
+from gearcam import build, load
+from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.cli import main
 from gearcam.view import watch, work
 from gearcam.view.command import reporter
@@ -232,6 +233,29 @@ def test_what_nothing_can_follow_is_refused_as_it_is_built() -> None:
     reply = json.loads(work.follow(NAIL.read_text(), str(NAIL), {key: 200.0}, key, False))
     assert "the bore reaches the root of the teeth" in reply["error"]
     assert "document" not in reply
+
+
+def test_of_what_follows_the_cause_that_is_left_is_told() -> None:
+    """The last ratio follows the first and the second closes the law, which then has no teeth."""
+    key, followed = "law.ratios[0]", {"law.ratios[1]": 0.04, "law.ratios[2]": 1.96}
+    reply = json.loads(work.follow(NAIL.read_text(), str(NAIL), {key: 1.96}, key, False))
+    assert reply["refused"]
+    assert reply["changes"] == {key: 1.96, **followed}
+    design = load(NAIL).with_(reply["changes"])
+    with pytest.raises(InfeasibleError) as refused:
+        _ = build(design).findings
+    assert refused.value.what in " ".join(reply["error"].split())
+
+
+def test_no_remedy_undoes_a_change() -> None:
+    """The second ratio was moved: the law closes by the others, or by going back."""
+    text = NAIL.read_text().replace("0.4", "0.43", 1)
+    assert tomllib.loads(text)["law"]["ratios"] == [1.6, 0.43, 1.6]
+    whole, kept = (work.seek(text, str(NAIL), old) for old in (None, {"law.ratios[1]": 0.4}))
+    back = {"law.ratios[1]": 0.4}
+    assert back in [one["changes"] for one in whole["found"]]
+    assert kept["found"] == [one for one in whole["found"] if one["changes"] != back]
+    assert "law.ratios[1] = 0.4" not in kept["lines"]
 
 
 def test_small_teeth_are_drawn_with_their_own_chords() -> None:
