@@ -393,6 +393,7 @@ def undercut(subject: CheckedPair, limit: float) -> Iterator[Remark]:
         below = np.isfinite(flanks.cusps.dedendum)
         message = f"Undercut removes flanks from above the pitch curve; {left}."
         factor = subject.pair.module / best
+        about = " : ".join(map(str, subject.teeth(factor)))
         fewest = math.ceil(gear.toothing.teeth * factor * (1.0 - ROUNDING))
         if below.any():
             slope = math.sin(gear.toothing.cutter.alpha) * math.cos(gear.toothing.cutter.alpha)
@@ -400,7 +401,7 @@ def undercut(subject: CheckedPair, limit: float) -> Iterator[Remark]:
             depth = formatted(lost, 4)
             message = f"Undercut removes up to {depth} mm of these flanks at the root; {left}."
         yield Remark(
-            f"{message} With about {subject.teeth(factor)} teeth this wheel has none.",
+            f"{message} With about {about} teeth this wheel has none.",
             f"wheel {gear.wheel}, teeth {tooth_ranges(teeth)}",
             gear.toothing.teeth,
             severity=severity,

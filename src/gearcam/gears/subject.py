@@ -63,11 +63,11 @@ class CheckedPair(ShortRepr):
         ]
         return found + ([(self.rim, self.gears[1])] if self.rim is not None else [])
 
-    def teeth(self, factor: float) -> str:
+    def teeth(self, factor: float) -> list[int]:
         """Return the tooth counts, in the same ratio, that are `factor` times as large."""
         common = math.gcd(*self.pair.teeth)
         each = math.ceil(common * factor * (1.0 + ROUNDING))
-        return f"[{', '.join(str(count // common * each) for count in self.pair.teeth)}]"
+        return [count // common * each for count in self.pair.teeth]
 
     @cached_property
     def slopes(self) -> tuple[Array, Array]:

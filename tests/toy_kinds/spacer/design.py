@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from gearcam.base.adjustments import Adjustment
-
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.facts import Fact, Facts
 from gearcam.base.findings import Finding

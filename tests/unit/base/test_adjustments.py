@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import pytest
 from hypothesis import given
@@ -63,7 +64,7 @@ def test_sizes_are_the_same_from_anywhere(start: float) -> None:
     all_of_them = {usual.at(k)["a"] for k in range(1, len(usual.shares) + 1)}
     assert found == {one for one in all_of_them if one > start}
     steps = sorted(found)
-    assert all(b / a <= 1.0101 for a, b in zip(steps, steps[1:], strict=False))
+    assert all(b / a <= 1.0101 for a, b in pairwise(steps))
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,6 @@ from typing import Any
 import pytest
 
 from gearcam.base.adjustments import Adjustment
-
 from gearcam.base.errors import beyond_limit
 
 OTHER = Adjustment(near={"rack.addendum": 1})

@@ -156,7 +156,7 @@ def test_remedies_of_both_wheels_are_nearly_the_least(folder: Path) -> None:
 
 def told_teeth(message: str) -> list[int]:
     """The tooth counts that a warning names."""
-    found = re.search(r"With (?:pair\.teeth = |about )\[(\d+), (\d+)\]", message)
+    found = re.search(r"With (?:pair\.teeth = \[|about )(\d+)(?:,| :) (\d+)", message)
     assert found, message
     return [int(count) for count in found.groups()]
 
