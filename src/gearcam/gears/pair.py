@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 
+from gearcam.base.adjustments import least
 from gearcam.base.display import NotebookView, ShortRepr, renderer
 from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.base.facts import Fact, Facts
+from gearcam.base.findings import ROUNDING
 from gearcam.base.numerals import formatted
 from gearcam.base.tolerances import Tolerances
 from gearcam.gears.cutter import choose_cutter, ring_pinions
@@ -29,6 +32,9 @@ from gearcam.numeric.columns import Columns
 
 FINEST = 1e-9
 """Smallest tolerance of an outline, in modules: rounding hides finer ones."""
+
+_DEPTH = 0.01
+"""Step in which a default dedendum yields, in modules."""
 
 _USUAL = 1e-3
 """Default tolerance of an outline, mm: a micrometre is finer than any machine that cuts teeth."""
@@ -268,6 +274,23 @@ class Gear(ShortRepr, NotebookView):
         return as_pairs(self.toothing.frames(phi).p)
 
 
+def _shallower(
+    rack: BasicRack, given: Rack, x: float, toothing: Callable[[BasicRack], Toothing]
+) -> tuple[BasicRack, Toothing]:
+    """Return the deepest rack with which the cutter of a ring has no pointed teeth, and the ring.
+
+    The rack as it is where none has.
+    """
+    steps = math.floor((rack.dedendum - rack.addendum) / _DEPTH + ROUNDING)
+    racks = [
+        settle_rack(replace(given, dedendum=round(rack.dedendum - k * _DEPTH, 9)), x)
+        for k in range(steps + 1)
+    ]
+    found = least(lambda k: toothing(racks[k]).cutter.fits, [steps] if steps else [])
+    chosen = racks[found[0]] if found else rack
+    return chosen, toothing(chosen)
+
+
 def make_pair(
     law: RatioLaw,
     spec: PairSpec,
@@ -323,7 +346,7 @@ def make_pair(
     demand_shift(rack, spec, module)
     demand_clearance(rack, spec, module, finish)
 
-    def toothing(wheel: Wheel) -> Toothing:
+    def toothing(wheel: Wheel, rack: BasicRack) -> Toothing:
         track = rolling.tracks[wheel - 1]
         pinions: tuple[float, ...] = ()
         if wheel == 2 and rolling.mate == RING and track.concave.radius < math.inf:
@@ -346,7 +369,11 @@ def make_pair(
             rounding=finish[wheel - 1].tip_rounding,
         )
 
-    toothings = toothing(1), toothing(2)
+    second = toothing(2, rack)
+    if rolling.mate == RING and given.dedendum is None and not second.cutter.fits:
+        rack, second = _shallower(rack, given, spec.x, partial(toothing, 2))
+        demand_clearance(rack, spec, module, finish)
+    toothings = toothing(1, rack), second
     demand_cutters(*toothings)
     return GearPair(
         rolling=rolling, teeth=spec.teeth, rack=rack, module=module, toothings=toothings

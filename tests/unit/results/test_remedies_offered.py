@@ -54,7 +54,7 @@ def test_other_teeth_do_not_change_a_motion_with_many_decimals(tmp_path: Path) -
 RACKS: dict[str, tuple[dict[str, Any], str, float]] = {
     "a steep ring": (
         pair(CIRCLE, [20, 40], pair=RING | {"module_mm": 0.8, "backlash_mm": 0.05},
-             rack={"pressure_angle_deg": 32}),
+             rack={"pressure_angle_deg": 32, "dedendum": 1.23}),
         "rack.dedendum", 1.1,
     ),
     "eight teeth": (pair(CIRCLE, [8, 8]), "rack.pressure_angle_deg", 28.0),
@@ -69,6 +69,19 @@ def test_another_rack_is_tried(name: str, tmp_path: Path) -> None:
     order = [(one.moves, one.resized, len(one.remaining)) for one in found]
     assert order == sorted(order)
     assert len(found) <= 4
+
+
+def test_the_default_dedendum_yields_to_the_cutter_of_a_ring(tmp_path: Path) -> None:
+    """As it does to a rack's tip: the deepest in hundredths whose cutter has no pointed teeth."""
+    document, _, _ = RACKS["a steep ring"]
+    free = document | {"rack": {"pressure_angle_deg": 32}}
+    made: Any = job_of(free, tmp_path)
+    depth = made.pair.rack.dedendum
+    assert made.pair.toothings[1].cutter.fits
+    assert made.pair.rack.yielded(made.design.rack)["dedendum"] == 1.25
+    assert 1.0 <= depth < 1.23
+    with pytest.raises(InfeasibleError, match="would have pointed teeth"):
+        _ = job_of(followed(free, {"rack.dedendum": depth + 0.01}), tmp_path).findings
 
 
 def test_a_cam_with_a_corner_is_made_large_enough_for_its_limit(tmp_path: Path) -> None:
