@@ -37,6 +37,9 @@ _HALVES: Final = 6
 _APART: Final = ("1.0000", "2.0000", "5.0000")
 """First digits of sizes that are looked at in turn."""
 
+_NEXT: Final = 25
+"""The size that is looked at before those: a fifth larger or smaller."""
+
 _PLAIN: Final = 6
 _NOISE: Final = 1e-9
 """Digits of steps after which only rounding is left, and part of a step that is rounding."""
@@ -54,8 +57,8 @@ class Adjustment:
     far : mapping of str to value
         The largest change, with the same keys; empty if `near` is the only one.
     size : bool
-        Whether the first value is a size, at which much larger or smaller ones are looked at in
-        turn: 1, 2, 5, 10 and so on. Else the far end is looked at first.
+        Whether the first value is a size, of which larger or smaller ones are looked at in turn:
+        a fifth more, then 1, 2, 5, 10 and so on. Else the far end is looked at first.
     guess : mapping of str to value
         A change that a formula says is about the least; looked at first.
     steps : sequence of mapping of str to value
@@ -214,8 +217,8 @@ def way(near: Changes, far: Changes, *, size: bool = False) -> Way:
         shares = [k / _TOGETHER for k in range(1, _TOGETHER + 1)]
     elif size and start * end > 0.0:
         sizes = _sizes(start, end)
-        apart = (k for k, one in enumerate(sizes, 1) if f"{abs(one):e}".startswith(_APART))
-        looks = [*dict.fromkeys([*apart, len(sizes)])] if sizes else []
+        apart = [k for k, one in enumerate(sizes, 1) if f"{abs(one):e}".startswith(_APART)]
+        looks = sorted({min(_NEXT, len(sizes)), *apart, len(sizes)}) if sizes else []
         return Way(near, far, [(one - start) / (end - start) for one in sizes], looks, size=True)
     else:
         shares = [(one - start) / (end - start) for one in _even(start, end)]

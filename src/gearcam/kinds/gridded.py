@@ -73,7 +73,7 @@ class GriddedCam(Result):
     program: Any
     cam: Any
 
-    @property
+    @cached_property
     @abstractmethod
     def flatter(self) -> Changes | None:
         """The least larger size that keeps the limit of the pressure angle, if any does."""

@@ -396,7 +396,7 @@ class Search:
             if self.cures(first):
                 self.keep(first)
                 return True
-            if not far:
+            if not far or text_of(first) in self.seen:  # it can be made, but has other errors
                 self.first.append(first)
         if not far or any(ahead(remedy.changes, near, far) for remedy in self.found):
             return False

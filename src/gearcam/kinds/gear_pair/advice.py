@@ -35,7 +35,7 @@ _ANGLES: Final = (20.0, 25.0, 28.0, 30.0)
 """Pressure angles of tools, deg."""
 
 _HEIGHTS: Final = (0.9, 0.8)
-_DEPTHS: Final = (1.2, 1.1, 1.0)
+_DEPTHS: Final = (1.1, 1.0)
 _SHIFTS: Final = (0.2, 0.4)
 """Addenda and dedenda below the usual ones, and profile shifts, in modules."""
 
@@ -108,7 +108,7 @@ def _racks(search: Search) -> Iterator[Adjustment]:
     yield from (one for one in _EDGES if np.any(value_at(search.document, *one.far)))
     if height < rack.addendum:
         yield Adjustment(far={"rack.addendum": rack.addendum})
-    angle = given["pressure_angle_deg"]
+    angle = _angle(search)
     yield _steps("rack.pressure_angle_deg", [one for one in _ANGLES if one > angle])
     yield _steps("rack.pressure_angle_deg", [one for one in _ANGLES[::-1] if one < angle])
     yield _steps("rack.dedendum", [one for one in _DEPTHS if height <= one < depth])
@@ -118,6 +118,11 @@ def _racks(search: Search) -> Iterator[Adjustment]:
     else:
         yield _steps("pair.x", _SHIFTS)
         yield _steps("pair.x", [-one for one in _SHIFTS])
+
+
+def _angle(search: Search) -> float:
+    angle: float = search.document["rack"]["pressure_angle_deg"]
+    return angle
 
 
 def _steps(key: str, values: Iterable[float]) -> Adjustment:
@@ -150,6 +155,9 @@ def _more_teeth(search: Search, factor: float) -> Iterator[Adjustment]:
     if "tips-collide" in search.codes:
         stub = {"rack.addendum": _HEIGHTS[-1]}
         yield Adjustment(near=teeth(common) | stub, far=teeth(most) | stub)
+    elif not search.found and factor <= _MOST_TIMES and _angle(search) < _ANGLES[1]:
+        steep = {"rack.pressure_angle_deg": _ANGLES[1]}
+        yield Adjustment(near=teeth(common + 1) | steep, far=teeth(most) | steep)
 
 
 def _lower(search: Search) -> Iterator[Adjustment]:
