@@ -295,7 +295,7 @@ def test_the_fewest_teeth_without_undercut_are_named() -> None:
     assert found.limit == teeth == 22
     assert "undercut" not in codes(job(law, (teeth, teeth)))
     assert "undercut" in codes(job(law, (teeth - 1, teeth - 1)))
-    assert f"[{teeth}, {teeth}]" in found.message
+    assert f"With about {teeth} : {teeth} teeth" in found.message
 
 
 def test_contact_ratio_of_circular_wheels_is_the_textbooks() -> None:

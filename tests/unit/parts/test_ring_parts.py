@@ -264,11 +264,20 @@ def test_a_thin_rim_of_a_ring_is_found_and_cured() -> None:
     (found,) = [one for one in thin.findings if one.code == "thin-rim"]
     assert found.where == "wheel 2"
     assert found.value == pytest.approx(5.39 / 2.0, rel=1e-12)
-    assert "ring.rim_mm = 5.4" in found.message
-    across = float(found.message.split("outer_diameter_mm = ")[1].rstrip("."))
-    for ring in (RingSpec(rim=5.4), RingSpec(outer_diameter=across)):
-        assert "thin-rim" not in codes(ring_job(ring=ring))
+    assert "ring.rim_mm = 5.4 keeps the limit" in found.message
+    assert "thin-rim" not in codes(ring_job(ring=RingSpec(rim=5.4)))
     assert thin.facts.document["mesh"]["rim_min_mm"] == 5.39
+
+
+def test_a_thin_rim_is_told_by_the_key_that_is_given() -> None:
+    """A ring has a rim or a diameter: the other key would be refused beside it."""
+    least = 2.0 * ring_job(ring=RingSpec(rim=5.4)).gear2.largest_radius + 2.0 * 5.4
+    thin = ring_job(ring=RingSpec(outer_diameter=least - 0.1))
+    (found,) = [one for one in thin.findings if one.code == "thin-rim"]
+    across = float(found.message.split("ring.outer_diameter_mm = ")[1].split()[0])
+    assert "rim_mm" not in found.message
+    assert across == pytest.approx(least, rel=1e-9)
+    assert "thin-rim" not in codes(ring_job(ring=RingSpec(outer_diameter=across)))
 
 
 def test_the_cutter_of_a_ring_is_noted_where_it_is_small() -> None:
