@@ -213,7 +213,7 @@ def way(near: Changes, far: Changes, *, size: bool = False) -> Way:
     if all(isinstance(one, int) for pairs in changing for pair in pairs for one in pair):
         count = math.gcd(*(b - a for pairs in changing for a, b in pairs))
         return Way(near, far, [k / count for k in range(1, count + 1)], _doubled(count))
-    if len(first) > 1:
+    if len({*first}) > 1:
         shares = [k / _TOGETHER for k in range(1, _TOGETHER + 1)]
     elif size and start * end > 0.0:
         sizes = _sizes(start, end)
@@ -332,8 +332,8 @@ def _value(value: object) -> str:
 def _mixed(near: Any, far: Any, share: float, size: bool) -> Any:
     if isinstance(near, list):
         ends = far if isinstance(far, list) else [far] * len(near)
-        # numbers that close together are not rounded each by itself
-        alone = len(_numbers(near, far)) == 1
+        # different numbers have to fit together, and are not rounded each by itself
+        alone = len({*_numbers(near, far)}) == 1
         return [
             _mixed(a, b, share, size) if alone else tidy(_part_way(a, b, share))
             for a, b in zip(near, ends, strict=True)

@@ -150,7 +150,8 @@ def test_remedies_of_both_wheels_are_nearly_the_least(folder: Path) -> None:
         made["blank.bolt_diameter_mm"] for made in (found.changes, found.less)
     )  # type: ignore[misc]
     assert widest == same <= 6.0  # 9 mm from the axis beside a bore of 12 mm
-    assert widest == pytest.approx(wider, rel=0.01)
+    assert widest == pytest.approx(wider, rel=0.011)
+    assert len(f"{widest:.10g}") <= 5
     assert wider > 5.9
 
 
@@ -220,7 +221,7 @@ def test_a_slow_machine_finds_the_same(folder: Path, monkeypatch: pytest.MonkeyP
     found = gearcam.remedies(made)
     early = gearcam.remedies(made, patience=0.3)
     assert (early.builds, early.gave_up) == (3, True)
-    clock = count(step=2.0)
+    clock = count(step=0.9)
     monkeypatch.setattr("gearcam.results.advice.time", SimpleNamespace(perf_counter=clock.__next__))
     assert gearcam.remedies(fresh(made)) == found
     assert found.found

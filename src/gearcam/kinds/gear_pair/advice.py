@@ -24,9 +24,8 @@ if TYPE_CHECKING:
     from gearcam.results.advice import Changes, Search
 
 _MOST_TIMES: Final = 3
-_FEW_TEETH: Final = 36
 _MOST_TEETH: Final = 400
-"""How many times more teeth are tried, or up to how many; up to how many if a refusal asks."""
+"""How many times more teeth are tried, or up to how many."""
 
 _OF_TEETH: Final = frozenset({"contact-ratio", "undercut", "tips-collide"})
 """Findings that other teeth or a smaller swing of the ratio may remove."""
@@ -142,8 +141,7 @@ def _more_teeth(search: Search, factor: float) -> Iterator[Adjustment]:
         return {"pair.teeth": [count // common * math.ceil(k) for count in given]}
 
     named = common * factor * (1.0 - _ROUNDING)
-    many = max(_MOST_TIMES * max(given), _MOST_TEETH if factor else _FEW_TEETH)
-    most = many * common // max(given)
+    most = max(_MOST_TIMES * common, _MOST_TEETH * common // max(given))
     yield Adjustment(
         far=teeth(most), guess=teeth(min(max(common + 1, named), most)) if factor else {}
     )
