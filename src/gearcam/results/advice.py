@@ -370,16 +370,16 @@ class Search:
         )
 
     @property
-    def enough(self) -> bool:
-        """Whether as many remedies that keep the motion were found as are offered."""
-        return sum(not one.moves for one in self.found) >= MOST
+    def keeping(self) -> int:
+        """Number of remedies found that keep the motion."""
+        return sum(not one.moves for one in self.found)
 
     def along(self, adjustment: Adjustment) -> bool:
         """Find the least change of an adjustment that cures; return whether there is one."""
         if self.over():
             return False
         changed = adjustment.far or adjustment.near or next(iter(adjustment.steps), {})
-        if self.advice.moves(changed, self.result.design) and len(self.found) >= _FEW:
+        if self.keeping >= _FEW and self.advice.moves(changed, self.result.design):
             return False
         if adjustment.steps:
             steps = adjustment.steps
@@ -439,7 +439,7 @@ class Search:
         Where a changed design is refused for another reason, its adjustments are followed too.
         """
         for adjustment in adjustments:
-            if self.enough:
+            if self.keeping >= MOST:
                 return
             if self.along(adjustment):
                 continue
