@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 import gearcam
-from gearcam.kinds.gridded import mesh_from
 from gearcam.kinds.spatial_cam.result import SpatialCamResult
 from gearcam.parts.solids import carved
 from gearcam.spatial import globoidal_carving, globoidal_surface
@@ -183,7 +182,7 @@ def _against_positions() -> Result:
 
 def _carved_rib(cam: Any) -> None:
     """Cut the rib out of a little more than the cam."""
-    uncut = mesh_from(globoidal_carving.uncut_surface(cam, POSITIONS))
+    uncut = globoidal_carving.uncut_surface(cam, POSITIONS)
     carved(uncut, globoidal_carving.roller_corners(cam, POSITIONS, USUAL[1]))
 
 
