@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import graphlib
+import importlib
 import json
 import os
 import re
@@ -133,6 +134,28 @@ def _foreign_to_witnesses(code: str) -> set[str]:
 
 
 WITNESSES = frozenset({"witness", "numpy", "shapely", "mpmath"})
+
+
+def absent(source: str) -> list[str]:
+    """What a file imports from the package though it is not there."""
+    return [
+        f"{node.module}: {name.name}"
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("gearcam")
+        for name in node.names
+        if not hasattr(importlib.import_module(str(node.module)), name.name)
+        and find_spec(f"{node.module}.{name.name}") is None
+    ]
+
+
+def test_what_benchmarks_and_tools_import_is_there() -> None:
+    """They are run rarely, and tools alone are checked for types."""
+    files = rules.python_files(rules.ROOT / "benchmarks", rules.ROOT / "tools")
+    assert len(files) > 20
+    assert [name for path in files for name in absent(path.read_text("utf-8"))] == []
+    assert absent("from gearcam.kinds.gridded import mesh_from, STEM") == [
+        "gearcam.kinds.gridded: mesh_from"
+    ]
 
 
 def test_witnesses_share_no_code_with_the_program() -> None:

@@ -1,10 +1,10 @@
 """Adjustments: changes of a design that may cure what is wrong, and the least that does.
 
 An *adjustment* goes from the values that a design has, or from the smallest change that may help,
-to the largest. On its way lie *places*, in their order. The first value of a place is a short
-decimal, and those of sizes are the same wherever a design starts: so what is printed is what was
-built, and it does not depend on the start. `least` finds the first place that cures; whether one
-does, a function says that builds it.
+to the largest. On its way lie *places*, in their order. Their numbers are short decimals, but
+where they have to fit together, and those of sizes are the same wherever a design starts: so what
+is printed is what was built, and it does not depend on the start. `least` finds the first place
+that cures; whether one does, a function says that builds it.
 """
 
 from __future__ import annotations
@@ -82,14 +82,15 @@ class Scale:
     """
 
     def __init__(self, digits: int = 0) -> None:
-        self._unit = 10 ** ((digits or 3) - 1)
+        self._digits = digits or 3
+        self._unit = 10 ** (self._digits - 1)
         spread = [*range(100, 200), *range(200, 500, 2), *range(500, 1000, 5)]
         self._decade = range(self._unit, 10 * self._unit) if digits else spread
 
     def value(self, index: int) -> float:
         """Return the decimal at an index."""
         power, place = divmod(index, len(self._decade))
-        return float(f"{self._decade[place]}e{power}") / self._unit
+        return float(f"{self._decade[place]}e{power - self._digits + 1}")
 
     def index(self, value: float) -> int:
         """Return the index of the largest decimal that is not above a positive `value`."""
@@ -159,6 +160,8 @@ class Way:
         Places to look at first, counted from 1.
     size : bool
         See `Adjustment`.
+    exact : bool
+        Whether the numbers change in proportion, and are not rounded each by itself.
     """
 
     near: Changes
@@ -166,11 +169,20 @@ class Way:
     shares: Sequence[float]
     looks: Sequence[int]
     size: bool = False
+    exact: bool = False
 
     def at(self, place: int) -> Changes:
         """Return the values at a place, 0 at the start."""
         share = self.shares[place - 1] if place else 0.0
+        if self.exact:
+            ends = ((key, one, self.far.get(key, one)) for key, one in self.near.items())
+            return {key: tidy(_part_way(start, end, share)) for key, start, end in ends}
         return between(self.near, self.far, share, size=self.size)
+
+    @property
+    def first(self) -> Changes:
+        """The smallest change: just beyond the start, of whole numbers the start itself."""
+        return tidy(self.near) if self.exact else between(self.near, self.far, INSIDE)
 
     def from_guess(self, guess: Changes) -> list[int]:
         """Return the places to look at from a guess on."""
@@ -210,16 +222,22 @@ def way(near: Changes, far: Changes, *, size: bool = False) -> Way:
     if not first:
         return Way(near, far, (), ())
     start, end = first[0]
-    if all(isinstance(one, int) for pairs in changing for pair in pairs for one in pair):
-        count = math.gcd(*(b - a for pairs in changing for a, b in pairs))
-        return Way(near, far, [k / count for k in range(1, count + 1)], _doubled(count))
+    pairs = [pair for one in changing for pair in one]
+    if all(isinstance(one, int) for pair in pairs for one in pair):
+        count = math.gcd(*(b - a for a, b in pairs))
+        shares = [k / count for k in range(1, count + 1)]
+        return Way(near, far, shares, _doubled(count), exact=True)
     if len({*first}) > 1:
         shares = [k / _TOGETHER for k in range(1, _TOGETHER + 1)]
     elif size and start * end > 0.0:
-        sizes = _sizes(start, end)
+        # what shrinks in proportion, such as lifts that return to 0, stays so
+        alike = len(pairs) > 1 and all(math.isclose(a * end, b * start) for a, b in pairs)
+        low, high = (1.0, end / start) if alike else (start, end)
+        sizes = _sizes(low, high)
         apart = [k for k, one in enumerate(sizes, 1) if f"{abs(one):e}".startswith(_APART)]
         looks = sorted({min(_NEXT, len(sizes)), *apart, len(sizes)}) if sizes else []
-        return Way(near, far, [(one - start) / (end - start) for one in sizes], looks, size=True)
+        shares = [(one - low) / (high - low) for one in sizes]
+        return Way(near, far, shares, looks, size=True, exact=alike)
     else:
         shares = [(one - start) / (end - start) for one in _even(start, end)]
     return Way(near, far, shares, [len(shares) >> k for k in range(_HALVES) if len(shares) >> k])
@@ -253,7 +271,7 @@ def _even(start: float, end: float) -> list[float]:
     """Return multiples of 1, 2 or 5 times a power of ten between two numbers, and the end."""
     widest = abs(end - start) / _FEWEST
     power = 10.0 ** math.floor(math.log10(widest) + _NOISE)
-    step = max(k * power for k in (1, 2, 5) if k * power <= widest * (1.0 + _NOISE))
+    step = max((k * power for k in (2, 5) if k * power <= widest * (1.0 + _NOISE)), default=power)
     low, high = sorted((start / step, end / step))
     numbers = range(math.floor(low + _NOISE) + 1, math.ceil(high - _NOISE))
     values = [float(f"{number * step:.10g}") for number in numbers]
@@ -268,8 +286,9 @@ def _doubled(count: int) -> list[int]:
 def _numbers(near: Any, far: Any) -> list[tuple[Any, Any]]:
     """Return the numbers at both ends of a value."""
     if isinstance(near, list):
-        ends = far if isinstance(far, list) else [far] * len(near)
-        return [pair for a, b in zip(near, ends, strict=True) for pair in _numbers(a, b)]
+        return [
+            pair for a, b in zip(near, _ends(near, far), strict=True) for pair in _numbers(a, b)
+        ]
     plain = all(isinstance(one, int | float) and not isinstance(one, bool) for one in (near, far))
     return [(near, far)] if plain else []
 
@@ -281,10 +300,11 @@ def text_of(changes: Changes) -> str:
 
 def joined(changes: Changes, other: Adjustment) -> Adjustment:
     """Return the `other` adjustment with `changes` made too."""
-    ends = {name: getattr(other, name) for name in ("near", "far", "guess")}
     return replace(
         other,
-        **{name: {**changes, **end} for name, end in ends.items() if end},
+        near={**changes, **other.near},
+        far={**changes, **other.far} if other.far else {},
+        guess={**changes, **other.guess} if other.guess else {},
         steps=[{**changes, **step} for step in other.steps],
     )
 
@@ -330,14 +350,11 @@ def _value(value: object) -> str:
 
 
 def _mixed(near: Any, far: Any, share: float, size: bool) -> Any:
+    # different numbers have to fit together, and are not rounded each by itself
+    if len({*_numbers(near, far)}) > 1:
+        return tidy(_part_way(near, far, share))
     if isinstance(near, list):
-        ends = far if isinstance(far, list) else [far] * len(near)
-        # different numbers have to fit together, and are not rounded each by itself
-        alone = len({*_numbers(near, far)}) == 1
-        return [
-            _mixed(a, b, share, size) if alone else tidy(_part_way(a, b, share))
-            for a, b in zip(near, ends, strict=True)
-        ]
+        return [_mixed(a, b, share, size) for a, b in zip(near, _ends(near, far), strict=True)]
     mixed = _part_way(near, far, share)
     if not isinstance(mixed, float) or near == far or share == 1.0:
         return tidy(mixed)
@@ -348,7 +365,14 @@ def _mixed(near: Any, far: Any, share: float, size: bool) -> Any:
 
 
 def _part_way(near: Any, far: Any, share: float) -> Any:
+    if isinstance(near, list):
+        return [_part_way(a, b, share) for a, b in zip(near, _ends(near, far), strict=True)]
     if not _numbers(near, far):
         return near
     mixed = near + share * (far - near)
     return round(mixed) if isinstance(near, int) and isinstance(far, int) else float(mixed)
+
+
+def _ends(near: list[Any], far: Any) -> list[Any]:
+    """Return the far end of each item of a list."""
+    return far if isinstance(far, list) else [far] * len(near)

@@ -20,7 +20,13 @@ from gearcam.base.tolerances import Tolerances
 from gearcam.gears.cutter import choose_cutter, ring_pinions
 from gearcam.gears.flank import Toothing
 from gearcam.gears.outline import Outline, build_outline
-from gearcam.gears.rack_limits import demand_clearance, demand_cutters, demand_shift, settle_rack
+from gearcam.gears.rack_limits import (
+    demand_clearance,
+    demand_cutters,
+    demand_shift,
+    least_dedendum,
+    settle_rack,
+)
 from gearcam.gears.rolling import Rolling, roll
 from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.gears.track import Wheel
@@ -281,13 +287,14 @@ def _shallower(
 
     The rack as it is where none has.
     """
-    steps = math.floor((rack.dedendum - rack.addendum) / _DEPTH + ROUNDING)
-    racks = [
-        settle_rack(replace(given, dedendum=round(rack.dedendum - k * _DEPTH, 9)), x)
-        for k in range(steps + 1)
-    ]
-    found = least(lambda k: toothing(racks[k]).cutter.fits, [steps] if steps else [])
-    chosen = racks[found[0]] if found else rack
+
+    def settled(place: int) -> BasicRack:
+        return settle_rack(replace(given, dedendum=round(rack.dedendum - place * _DEPTH, 9)), x)
+
+    lowest = max(rack.addendum, least_dedendum(given, x))
+    steps = math.floor((rack.dedendum - lowest) / _DEPTH + ROUNDING)
+    found = least(lambda place: toothing(settled(place)).cutter.fits, [steps] if steps > 0 else [])
+    chosen = settled(found[0]) if found else rack
     return chosen, toothing(chosen)
 
 
@@ -372,6 +379,7 @@ def make_pair(
     second = toothing(2, rack)
     if rolling.mate == RING and given.dedendum is None and not second.cutter.fits:
         rack, second = _shallower(rack, given, spec.x, partial(toothing, 2))
+        demand_shift(rack, spec, module)
         demand_clearance(rack, spec, module, finish)
     toothings = toothing(1, rack), second
     demand_cutters(*toothings)

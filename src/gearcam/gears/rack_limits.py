@@ -71,7 +71,7 @@ def settle_rack(given: Rack, x: float) -> BasicRack:
         addendum = wanted if wanted <= deepest else max(_SHALLOW * deepest, shift + _LEAST_ADDENDUM)
     dedendum = given.dedendum
     if dedendum is None:
-        room = shift + (given.tip_radius or 0.0) / _TIP_PART
+        room = least_dedendum(given, x)
         wanted = usual.dedendum if usual.dedendum >= addendum else addendum / _SHALLOW
         dedendum = max(min(max(wanted, room), deepest), addendum)
     rack = BasicRack(
@@ -86,6 +86,11 @@ def settle_rack(given: Rack, x: float) -> BasicRack:
     free = given.dedendum is None
     _demand_rack(rack, _widest_tip(given.pressure_angle) if free else _largest_tip(rack))
     return rack
+
+
+def least_dedendum(given: Rack, x: float) -> float:
+    """Return the least dedendum for a `given` tip radius at a profile shift `x`, in modules."""
+    return abs(x) + (given.tip_radius or 0.0) / _TIP_PART
 
 
 def _deepest(alpha: float, tip_radius: float) -> float:

@@ -63,7 +63,8 @@ class SizeAdvice(Advice):
             if isinstance(given, float) and 0.0 < given < (far := self.farthest(search, given)):
                 yield Adjustment(far=self.grown(document, key, far), size=True)
         for key in self.smaller:
-            if given := value_at(document, key):
+            given = value_at(document, key)
+            if isinstance(given, float) and given:
                 yield Adjustment(far={key: _SMALLER * given}, size=True)
 
     def milder(self, document: Mapping[str, Any]) -> Iterator[Adjustment]:

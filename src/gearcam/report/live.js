@@ -36,10 +36,10 @@
   }
 
   // Search for changes with which the refused design can be made, and offer them.
-  async function remedy(changes, last, turn) {
+  async function remedy(tried, last, turn) {
     const place = document.querySelector("#error div");
     place.textContent = "Searching for remedies.";
-    const { found, lines, stale } = await post("remedies", { changes, last });
+    const { found, lines, stale } = await post("remedies", { changes: tried, last });
     if (stale || turn !== arrived) return;
     if (!found?.length) {
       place.textContent = lines ?? "";
@@ -47,7 +47,7 @@
     }
     const items = found.map(({ text, notes, changes }) => {
       const item = element("li", {}, element("code", { textContent: text }), ` ${notes}`);
-      item.dataset.changes = JSON.stringify(changes);
+      item.dataset.changes = JSON.stringify({ ...tried, ...changes });
       return item;
     });
     place.replaceChildren(lines.split("\n")[0], element("ul", {}, ...items));
@@ -106,10 +106,12 @@
   }
 
   function take(reply, last) {
-    if (reply.document) window.gearcam.show(reply.document);
     tell(reply.error, Boolean(reply.error));
-    for (const [key, value] of Object.entries(reply.changes ?? {})) {
-      if (key !== last) set(key, value);
+    if (reply.document) {
+      window.gearcam.show(reply.document);
+      for (const [key, value] of Object.entries(reply.changes)) {
+        if (key !== last) set(key, value);
+      }
     }
     addButtons();
   }

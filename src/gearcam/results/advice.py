@@ -16,11 +16,9 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.adjustments import (
-    INSIDE,
     Adjustment,
     Changes,
     ahead,
-    between,
     for_both,
     joined,
     least,
@@ -355,16 +353,32 @@ class Search:
         """Return whether the changed design builds without errors."""
         return self.left(changes) == frozenset()
 
-    def keep(self, changes: Changes, less: Changes | None = None) -> None:
-        """Add a remedy: its `changes`, and the largest smaller ones that are not enough, `less`."""
+    def keep(
+        self, changes: Changes, less: Changes | None = None, after: Remedy | None = None
+    ) -> None:
+        """Add a remedy.
+
+        Parameters
+        ----------
+        changes : mapping of str to value
+            What it changes.
+        less : mapping of str to value, optional
+            The largest smaller changes that are not enough.
+        after : Remedy, optional
+            What was found after a first change.
+        """
         design = self.result.design.with_(changes)
+        own = {
+            key: value for key, value in changes.items() if not after or key not in after.changes
+        }
         self.found.append(
             Remedy(
                 changes=changes,
                 less=less or {},
                 remaining=self.seen[text_of(changes)]["warning"],
-                moves=self.advice.moves(changes, self.result.design),
-                resized=self.advice.resized(changes, self.result.design),
+                moves=self.advice.moves(own, self.result.design) or bool(after and after.moves),
+                resized=self.advice.resized(own, self.result.design)
+                or bool(after and after.resized),
                 design=design,
             )
         )
@@ -387,12 +401,13 @@ class Search:
         far = adjustment.far
         near = {
             key: adjustment.near.get(key, value_at(self.document, key))
-            for key in far or adjustment.near
+            for key in {**adjustment.near, **far}
         }
         if any(value is None for value in near.values()):
             return False
+        places = way(near, far, size=adjustment.size)
         if adjustment.near:
-            first = between(near, far, INSIDE) if far else tidy(near)
+            first = places.first if far else tidy(near)
             if self.cures(first):
                 self.keep(first)
                 return True
@@ -400,7 +415,7 @@ class Search:
                 self.first.append(first)
         if not far or any(ahead(remedy.changes, near, far) for remedy in self.found):
             return False
-        places, guess = way(near, far, size=adjustment.size), adjustment.guess
+        guess = adjustment.guess
         looks = places.from_guess(guess) if guess else places.looks
         return self._least(places.at, looks, guessed=bool(guess))
 
@@ -431,7 +446,7 @@ class Search:
                 less = together(changes, remedy.less) if remedy.less else None
                 both = together(changes, remedy.changes)
                 self.seen[text_of(both)] = {"warning": remedy.remaining}
-                self.keep(both, less)
+                self.keep(both, less, remedy)
 
     def follow(self, adjustments: Iterable[Adjustment]) -> None:
         """Follow `adjustments`, each for one wheel and, where that does not help, for both.

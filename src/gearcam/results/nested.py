@@ -36,7 +36,13 @@ def within(key: str) -> Iterator[None]:
             unit=error.unit,
             nearest=error.nearest,
             adjustments=[
-                replace(way, near=keyed(key, way.near), far=keyed(key, way.far))
+                replace(
+                    way,
+                    near=keyed(key, way.near),
+                    far=keyed(key, way.far),
+                    guess=keyed(key, way.guess),
+                    steps=[keyed(key, step) for step in way.steps],
+                )
                 for way in error.adjustments
             ],
         ) from error

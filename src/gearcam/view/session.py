@@ -229,7 +229,7 @@ class Session:
         """
         text = replaced(self.state.text, _values(asked.get("changes"), self.state))
         last, given = asked.get("last"), numbers(self.state.text)
-        before = {last: given[last]} if last in given else None
+        before = {last: given[last]} if isinstance(last, str) and last in given else None
         return self._search.run(
             lambda: _result(self._workers.submit(work.seek, text, self.file, before), self.file)
         )

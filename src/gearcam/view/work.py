@@ -98,8 +98,10 @@ def seek(text: str, file: str, before: Values | None = None) -> Reply:
 
     def answer() -> Reply:
         sought, old = remedies(build(loads(text, file=file))), (before or {}).items()
-        kept = tuple(one for one in sought.found if not old <= _items(one.changes).items())
-        sought = sought if not old else replace(sought, found=kept)
+        if old:  # what undoes the change is no remedy, and was not tried in vain
+            kept = tuple(one for one in sought.found if not old <= _items(one.changes).items())
+            tried = tuple(key for key in sought.tried if not key.startswith(tuple(before or ())))
+            sought = replace(sought, found=kept, tried=tried)
         found = [
             {"text": one.text, "notes": one.notes, "changes": dict(one.changes)}
             for one in sought.found
@@ -150,8 +152,8 @@ def follow(text: str, file: str, changes: Values, last: str, exact: bool) -> byt
     Returns
     -------
     bytes
-        A reply as JSON, with all ``changes`` that were made; of a refused design with those with
-        which it was refused last, and so for its true cause.
+        A reply as JSON, with all ``changes`` that were made. A design that is refused with them all
+        for another reason than with those asked for is told with that reason and them.
     """
 
     def answer(values: Values) -> Reply:
@@ -186,7 +188,13 @@ def _first(
         reply = reply or (tried({**more, **near}) if near else None)
     if reply:
         return reply
-    more, error = refusals[-1]
+    first = getattr(refusals[0][1], "what", "")
+    left = [
+        (more, error)
+        for more, error in refusals[1:]
+        if isinstance(error, InfeasibleError) and error.what != first
+    ]
+    more, error = (refusals[:1] + left)[-1]
     return {**_refusal(error, file), "changes": {**changes, **more}}
 
 

@@ -80,7 +80,7 @@ def test_sizes_are_the_same_from_anywhere(start: float) -> None:
 )
 def test_places_are_short_and_in_their_order(near: dict, far: dict, size: bool) -> None:  # type: ignore[type-arg]
     """Each is a change of its own, and none goes back."""
-    places = way(near, far, size=size)
+    places, digits = way(near, far, size=size), 4 + 2 * ("b" in near)
     found = [places.at(k) for k in range(len(places.shares) + 1)]
     flat = [
         [x for one in made.values() for x in (one if isinstance(one, list) else [one])]
@@ -90,7 +90,9 @@ def test_places_are_short_and_in_their_order(near: dict, far: dict, size: bool) 
     assert len({str(one) for one in numbers}) == len(numbers)
     for values in zip(*numbers, strict=True):
         assert [*values] == sorted(values, reverse=values[-1] < values[0])
-    assert all(len(f"{one[0]:.12g}".lstrip("-0.").replace(".", "")) <= 4 for one in numbers[1:])
+    assert all(
+        len(f"{one[0]:.12g}".lstrip("-0.").replace(".", "")) <= digits for one in numbers[1:]
+    )
     assert places.at(len(places.shares)) == {
         key: value if isinstance(value, list) or not isinstance(near[key], list) else found[-1][key]
         for key, value in far.items()
@@ -102,3 +104,26 @@ def test_numbers_that_close_together_are_not_rounded_alone() -> None:
     for place in range(1, len(together.shares) + 1):
         first, second = together.at(place)["a"]
         assert first + second == pytest.approx(2.0, abs=1e-9)
+
+
+def test_lifts_that_return_to_0_do_so_at_each_place() -> None:
+    """12 + 8 - 20 = 0 in short decimals."""
+    near = {"a": 12.0, "b": 8.0, "c": 20.0}
+    places = way(near, {key: 0.01 * value for key, value in near.items()}, size=True)
+    for place in range(1, len(places.shares) + 1):
+        a, b, c = places.at(place).values()
+        assert abs(a + b - c) < 1e-9
+        assert len(f"{c:.12g}") <= 8
+
+
+def test_the_first_of_many_teeth_keeps_their_ratio() -> None:
+    many = way({"z": [300, 306]}, {"z": [900, 918]})
+    assert many.first == {"z": [300, 306]}
+    assert many.at(1) == {"z": [350, 357]}
+
+
+@pytest.mark.parametrize("start", [0.999999998, 1.0, 1.000000002])
+def test_ways_of_nearly_round_length_have_places(start: float) -> None:
+    places = way({"a": start}, {"a": 0.0})
+    assert 90 <= len(places.shares) <= 260
+    assert places.at(len(places.shares)) == {"a": 0.0}

@@ -379,10 +379,6 @@ class CamAdvice(SizeAdvice):
                 near=grown(search.document, "cam.base_radius_mm", shortened(base, 1.0))
             )
 
-    def resized(self, changes: Changes, design: Any) -> bool:  # noqa: ARG002
-        """Return whether a `design` has another size with `changes`."""
-        return any(key.startswith("cam.") for key in changes)
-
 
 def _reach(search: Search) -> float:
     """Return how far a follower and its lift reach, mm."""

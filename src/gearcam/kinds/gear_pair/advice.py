@@ -90,7 +90,8 @@ class PairAdvice(Advice):
     def moves(self, changes: Changes, design: Any) -> bool:
         """Return whether a `design` has another law or mean ratio with `changes`."""
         (a, b), (z1, z2) = design.pair.teeth, changes.get("pair.teeth", design.pair.teeth)
-        return bool(a * z2 != b * z1) or any(key.startswith("law.") for key in changes)
+        others = any(key.startswith(("law.", "pair.type")) for key in changes)
+        return others or bool(a * z2 != b * z1)
 
     def resized(self, changes: Changes, design: Any) -> bool:
         """Return whether a `design` has another centre distance with `changes`."""
@@ -111,7 +112,8 @@ def _racks(search: Search) -> Iterator[Adjustment]:
     yield _steps("rack.pressure_angle_deg", [one for one in _ANGLES if one > angle])
     yield _steps("rack.pressure_angle_deg", [one for one in _ANGLES[::-1] if one < angle])
     yield _steps("rack.dedendum", [one for one in _DEPTHS if height <= one < depth])
-    yield _steps("rack.addendum", [one for one in _HEIGHTS if one < height])
+    if not any("rack.addendum" in one.changes for one in search.found):
+        yield _steps("rack.addendum", [one for one in _HEIGHTS if one < height])
     if search.document["pair"]["x"]:
         yield Adjustment(far={"pair.x": 0.0})
     else:
@@ -150,9 +152,12 @@ def _more_teeth(search: Search, factor: float) -> Iterator[Adjustment]:
         counts = more[0].changes["pair.teeth"]
         module = float(f"{design.pair.module * given[0] / counts[0]:.6g}")  # type: ignore[index]
         yield Adjustment(steps=[{"pair.teeth": counts, "pair.module_mm": module}])
+    height, stub = search.document["rack"].get("addendum", math.inf), _HEIGHTS[-1]
     if "tips-collide" in search.codes:
-        stub = {"rack.addendum": _HEIGHTS[-1]}
-        yield Adjustment(near=teeth(common) | stub, far=teeth(most) | stub)
+        lowered = any("rack.addendum" in one.changes for one in search.found)
+        if height > stub and not lowered:
+            short = {"rack.addendum": stub}
+            yield Adjustment(near=teeth(common + 1) | short, far=teeth(most) | short)
     elif not search.found and factor <= _MOST_TIMES and _angle(search) < _ANGLES[1]:
         steep = {"rack.pressure_angle_deg": _ANGLES[1]}
         yield Adjustment(near=teeth(common + 1) | steep, far=teeth(most) | steep)
@@ -170,7 +175,7 @@ def _lower(search: Search) -> Iterator[Adjustment]:
             return False
         return found is None or found.margin >= limit
 
-    top, bottom = math.floor(result.pair.rack.addendum / _FINE), round(_LOW / _FINE)
+    top, bottom = math.ceil(result.pair.rack.addendum / _FINE), round(_LOW / _FINE)
     looks = [top - bottom] if top > bottom else []
     found = least(lambda less: passes((top - less) * _FINE), looks, over=search.over)
     if found is not None:

@@ -40,8 +40,8 @@ if TYPE_CHECKING:
 TURRET: Final = "turret"
 """Name of its solid."""
 
-_LOOKS: Final = (1, 2, 4, 8, 16)
-"""Where larger distances than the computed one are looked at, in steps of the last digit."""
+_LOOKS: Final = (0, 1, 2, 4, 8, 16)
+"""Where distances from the computed one on are looked at, in steps of the last digit."""
 
 _SHOWN: Final = 360
 """Largest number of cam angles of a solid that is only looked at."""
@@ -96,12 +96,13 @@ class GloboidalCamResult(GriddedCam):
         """The least larger centre distance that keeps the limit (see `GriddedCam.flatter`)."""
         from gearcam.spatial.globoidal_checks import KIND
 
-        limit, cam, scale = (
+        cam, scale = self.cam, Scale(DIGITS)
+        limit, start = (
             limit_of(KIND, "pressure-angle", self.design.limits),
-            self.cam,
-            Scale(DIGITS),
+            scale.index(cam.distance),
         )
-        start = scale.index(cam.reach * (1.0 + cam.program.peaks[0] / math.tan(limit)))
+        about = cam.reach * (1.0 + self.program.peaks[0] / math.tan(limit))
+        guess = max(1, scale.index(about) + 1 - start)
 
         def changed(place: int) -> dict[str, float]:
             return {"cam.center_distance_mm": scale.value(start + place)}
@@ -113,7 +114,7 @@ class GloboidalCamResult(GriddedCam):
             except (DesignError, InfeasibleError):
                 return False
 
-        found = least(keeps, _LOOKS, guessed=True)
+        found = least(keeps, (guess + one for one in _LOOKS), guessed=True)
         return changed(found[0]) if found else None
 
     @property

@@ -15,8 +15,11 @@ if TYPE_CHECKING:
 _SHORTEST: Final = 0.05
 """How much of a crank is left in the search."""
 
-_STILL: Final = ("output.", "limits.", "torque.")
-"""Beginnings of keys that change no motion."""
+_STILL: Final = (
+    *("output", "limits", "torque", "load", "mass", "spring", "gravity", "interval", "dwell"),
+    "stretch",
+)
+"""Tables that change no motion."""
 
 
 class MechanismAdvice(Advice):
