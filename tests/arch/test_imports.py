@@ -151,7 +151,7 @@ def absent(source: str) -> list[str]:
 def test_what_benchmarks_and_tools_import_is_there() -> None:
     """They are run rarely, and tools alone are checked for types."""
     files = rules.python_files(rules.ROOT / "benchmarks", rules.ROOT / "tools")
-    assert len(files) > 20
+    assert len(files) > 10  # a copy in which the guide is followed has no benchmarks
     assert [name for path in files for name in absent(path.read_text("utf-8"))] == []
     assert absent("from gearcam.kinds.gridded import mesh_from, STEM") == [
         "gearcam.kinds.gridded: mesh_from"
