@@ -228,11 +228,11 @@ def test_a_design_with_errors_offers_its_remedies_with_buttons(page: Chrome) -> 
     buttons = until(lambda: page.find_elements(By.CSS_SELECTOR, "#remedies li button"))
     assert verdict(page)[1] == RED
     assert places(page) == before
-    assert buttons[0].accessible_name == "Use this: pair.teeth = [52, 52]"
+    assert buttons[0].accessible_name == "Use this: pair.teeth = [24, 24]"
     page.execute_script("arguments[0].click()", buttons[0])
     until(lambda: verdict(page)[1] != RED)
-    assert teeth.get_attribute("value") == "52"
-    assert field(page, "pair.teeth[1]").get_attribute("value") == "52"
+    assert teeth.get_attribute("value") == "24"
+    assert field(page, "pair.teeth[1]").get_attribute("value") == "24"
     assert verdict(page) in {good, ("Ready to cut", "rgb(28, 107, 63)")}
     assert not page.find_elements(By.CSS_SELECTOR, "#remedies li button")
 
