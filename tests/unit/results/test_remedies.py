@@ -71,7 +71,9 @@ def moved(document: Mapping[str, Any], changes: Mapping[str, Any]) -> bool:
     """Whether changes of a design change its law, its lift or its mean ratio."""
     z1, z2 = document.get("pair", {}).get("teeth", (1, 1))
     a, b = changes.get("pair.teeth", (z1, z2))
-    return a * z2 != b * z1 or any(key.startswith(("law.", "motion")) for key in changes)
+    # a ring turns the same way as its wheel, another wheel the other way
+    titles = ("law.", "motion", "pair.type")
+    return a * z2 != b * z1 or any(key.startswith(titles) for key in changes)
 
 
 OTHER_RATIO = {
