@@ -59,8 +59,9 @@ class Adjustment:
     size : bool
         Whether the first value is a size, of which larger or smaller ones are looked at in turn:
         a fifth more, then 1, 2, 5, 10 and so on. Else the far end is looked at first.
-    guess : mapping of str to value
-        A change that a formula says is about the least; looked at first.
+    guess : float
+        How far on the way a formula says the least change is, from 0 to 1: looked at first; 0
+        without a formula.
     steps : sequence of mapping of str to value
         All changes that may help, the least first, in place of those between two ends.
     """
@@ -68,7 +69,7 @@ class Adjustment:
     near: Changes = field(default_factory=dict)
     far: Changes = field(default_factory=dict)
     size: bool = False
-    guess: Changes = field(default_factory=dict)
+    guess: float = 0.0
     steps: Sequence[Changes] = ()
 
 
@@ -184,18 +185,10 @@ class Way:
         """The smallest change: just beyond the start, of whole numbers the start itself."""
         return tidy(self.near) if self.exact else between(self.near, self.far, INSIDE)
 
-    def from_guess(self, guess: Changes) -> list[int]:
-        """Return the places to look at from a guess on."""
+    def from_guess(self, guess: float) -> list[int]:
+        """Return the places to look at from a guess on (see `Adjustment`)."""
         count = len(self.shares)
-        share = max(
-            (value - start) / (end - start)
-            for key in guess
-            for (start, end), (value, _) in zip(
-                _numbers(self.near[key], self.far[key]), _numbers(guess[key], 0), strict=True
-            )
-            if start != end
-        )
-        first = min(bisect_left(self.shares, share - _NOISE) + 1, count)
+        first = min(bisect_left(self.shares, guess - _NOISE) + 1, count)
         return [first, *(first + one for one in _doubled(count - first))]
 
 
@@ -304,7 +297,6 @@ def joined(changes: Changes, other: Adjustment) -> Adjustment:
         other,
         near={**changes, **other.near},
         far={**changes, **other.far} if other.far else {},
-        guess={**changes, **other.guess} if other.guess else {},
         steps=[{**changes, **step} for step in other.steps],
     )
 

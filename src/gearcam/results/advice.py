@@ -282,7 +282,7 @@ class Search:
         self.first: list[Changes] = []
         self.tried: dict[str, None] = {}
         self.gave_up = False
-        self.second: InfeasibleError | None = None
+        self.refused: dict[str, InfeasibleError | None] = {}
         self.seen: dict[str, dict[str, tuple[str, ...]]] = {}
 
     def seek(self) -> None:
@@ -327,59 +327,48 @@ class Search:
     def left(self, changes: Changes) -> frozenset[str] | None:
         """Return the codes of all errors of the changed design; None if it is refused.
 
-        A refusal for another reason than that of the design is kept as `second`, the codes of
-        errors and warnings in `seen`.
+        Changes are built once: a refusal is kept in `refused` if its reason is not that of the
+        design, the codes of errors and warnings in `seen`.
         """
-        self.second = None
+        text = text_of(changes)
+        if text not in self.seen and text not in self.refused:
+            self._build(changes, text)
+        return frozenset(self.seen[text]["error"]) if text in self.seen else None
+
+    def _build(self, changes: Changes, text: str) -> None:
+        self.refused[text] = None
         try:
             other = self.changed(changes)
             if self.hopeless(other):
-                return None
+                return
             findings = other.checked_without_hints
             demand_files(other)
         except InfeasibleError as error:
             if self.refusal is None or error.what != self.refusal.what:
-                self.second = error
-            return None
+                self.refused[text] = error
+            return
         except DesignError:
-            return None
-        self.seen[text_of(changes)] = {
+            return
+        self.seen[text] = {
             word: tuple(finding.code for finding in findings if finding.severity == word)
             for word in ("error", "warning")
         }
-        return frozenset(self.seen[text_of(changes)]["error"])
 
     def cures(self, changes: Changes) -> bool:
         """Return whether the changed design builds without errors."""
         return self.left(changes) == frozenset()
 
-    def keep(
-        self, changes: Changes, less: Changes | None = None, after: Remedy | None = None
-    ) -> None:
-        """Add a remedy.
-
-        Parameters
-        ----------
-        changes : mapping of str to value
-            What it changes.
-        less : mapping of str to value, optional
-            The largest smaller changes that are not enough.
-        after : Remedy, optional
-            What was found after a first change.
-        """
-        design = self.result.design.with_(changes)
-        own = {
-            key: value for key, value in changes.items() if not after or key not in after.changes
-        }
+    def keep(self, changes: Changes, less: Changes | None = None) -> None:
+        """Add a remedy: its `changes`, and the largest smaller ones that are not enough, `less`."""
+        design = self.result.design
         self.found.append(
             Remedy(
                 changes=changes,
                 less=less or {},
                 remaining=self.seen[text_of(changes)]["warning"],
-                moves=self.advice.moves(own, self.result.design) or bool(after and after.moves),
-                resized=self.advice.resized(own, self.result.design)
-                or bool(after and after.resized),
-                design=design,
+                moves=self.advice.moves(changes, design),
+                resized=self.advice.resized(changes, design),
+                design=design.with_(changes),
             )
         )
 
@@ -442,11 +431,19 @@ class Search:
             other = _sought(changed, None, left, last=True)
             self.builds += other.builds
             self.tried |= dict.fromkeys(other.tried)
+            design = self.result.design
             for remedy in other.found:
-                less = together(changes, remedy.less) if remedy.less else None
                 both = together(changes, remedy.changes)
-                self.seen[text_of(both)] = {"warning": remedy.remaining}
-                self.keep(both, less, remedy)
+                self.found.append(
+                    replace(
+                        remedy,
+                        changes=both,
+                        less=together(changes, remedy.less) if remedy.less else {},
+                        moves=remedy.moves or self.advice.moves(changes, design),
+                        resized=remedy.resized or self.advice.resized(changes, design),
+                        design=design.with_(both),
+                    )
+                )
 
     def follow(self, adjustments: Iterable[Adjustment]) -> None:
         """Follow `adjustments`, each for one wheel and, where that does not help, for both.
@@ -458,10 +455,12 @@ class Search:
                 return
             if self.along(adjustment):
                 continue
+            near = tidy(adjustment.near)
             if (both := for_both(adjustment)) is not None:
                 self.along(both)
-            elif adjustment.near and not self.over() and self.left(tidy(adjustment.near)) is None:
-                for other in self.second.adjustments if self.second else ():
+            elif near and not self.over() and self.left(near) is None:
+                second = self.refused[text_of(near)]
+                for other in second.adjustments if second else ():
                     self.along(joined(adjustment.near, other))
 
 

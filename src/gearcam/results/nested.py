@@ -40,7 +40,6 @@ def within(key: str) -> Iterator[None]:
                     way,
                     near=keyed(key, way.near),
                     far=keyed(key, way.far),
-                    guess=keyed(key, way.guess),
                     steps=[keyed(key, step) for step in way.steps],
                 )
                 for way in error.adjustments

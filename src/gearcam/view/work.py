@@ -7,7 +7,7 @@ pickled. A *reply* contains a ``document``, or an ``error`` in words.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any, Final
 
@@ -152,8 +152,9 @@ def follow(text: str, file: str, changes: Values, last: str, exact: bool) -> byt
     Returns
     -------
     bytes
-        A reply as JSON, with all ``changes`` that were made. A design that is refused with them all
-        for another reason than with those asked for is told with that reason and them.
+        A reply as JSON, with all ``changes`` that were made. If the design is refused, its
+        ``error`` says why; where other numbers have to follow and lead to another reason, it gives
+        that one, and ``changes`` has those numbers too.
     """
 
     def answer(values: Values) -> Reply:
@@ -170,31 +171,31 @@ def _first(
 ) -> Reply:
     """Return the reply for the changes alone or, if refused, together with required ones."""
     values = numbers(text)
-    equal = equals(values, last, changes[last])
     refusals: list[tuple[Values, DesignError | InfeasibleError]] = []
 
-    def tried(more: Values) -> Reply | None:
+    def required() -> Iterator[Values]:
+        """Yield what to change too: nothing, equal numbers, what each refusal names."""
+        yield {}
+        if equal := equals(values, last, changes[last]):
+            yield equal
+        for more, error in tuple(refusals):
+            ways = (_items(way.near) for way in getattr(error, "adjustments", ()))
+            fit = (way for way in ways if way and last not in way and way.keys() <= values.keys())
+            if near := next(fit, None):
+                yield {**more, **near}
+
+    for more in required():
         try:
             return answer({**changes, **more})
         except (DesignError, InfeasibleError) as error:
             refusals.append((more, error))
-            return None
-
-    reply = tried({}) or (tried(equal) if equal else None)
-    for more, error in () if reply else tuple(refusals):
-        ways = (_items(way.near) for way in getattr(error, "adjustments", ()))
-        fit = (way for way in ways if way and last not in way and way.keys() <= values.keys())
-        near = next(fit, None)
-        reply = reply or (tried({**more, **near}) if near else None)
-    if reply:
-        return reply
-    first = getattr(refusals[0][1], "what", "")
-    left = [
+    reason = getattr(refusals[0][1], "what", "")
+    others = (
         (more, error)
-        for more, error in refusals[1:]
-        if isinstance(error, InfeasibleError) and error.what != first
-    ]
-    more, error = (refusals[:1] + left)[-1]
+        for more, error in refusals[:0:-1]
+        if isinstance(error, InfeasibleError) and error.what != reason
+    )
+    more, error = next(others, refusals[0])
     return {**_refusal(error, file), "changes": {**changes, **more}}
 
 

@@ -139,14 +139,13 @@ def _more_teeth(search: Search, factor: float) -> Iterator[Adjustment]:
     given: tuple[int, int] = design.pair.teeth
     common, before = math.gcd(*given), len(search.found)
 
-    def teeth(k: float) -> dict[str, list[int]]:
-        return {"pair.teeth": [count // common * math.ceil(k) for count in given]}
+    def teeth(k: int) -> dict[str, list[int]]:
+        return {"pair.teeth": [count // common * k for count in given]}
 
     named = common * factor * (1.0 - _ROUNDING)
     most = max(_MOST_TIMES * common, _MOST_TEETH * common // max(given))
-    yield Adjustment(
-        far=teeth(most), guess=teeth(min(max(common + 1, named), most)) if factor else {}
-    )
+    guess = max(1.0, named - common) / (most - common) if factor else 0.0
+    yield Adjustment(far=teeth(most), guess=guess)
     more = search.found[before:]
     if more and design.pair.module is not None:
         counts = more[0].changes["pair.teeth"]

@@ -16,9 +16,9 @@ _SHORTEST: Final = 0.05
 """How much of a crank is left in the search."""
 
 _STILL: Final = (
-    *("output", "limits", "torque", "load", "mass", "spring", "gravity", "interval", "dwell"),
+    "output", "limits", "torque", "load", "mass", "spring", "gravity", "interval", "dwell",
     "stretch",
-)
+)  # fmt: skip
 """Tables that change no motion."""
 
 
@@ -28,11 +28,10 @@ class MechanismAdvice(Advice):
     def seek(self, search: Search, refusal: InfeasibleError | None) -> None:
         """Guide a `search`; a `refusal` of a loop to close may end with a shorter crank."""
         super().seek(search, refusal)
-        cranks = search.document.get("crank", ())
         if refusal is not None and refusal.where.startswith("dyad["):
-            keys = {f"crank[{k}].length_mm": one["length_mm"] for k, one in enumerate(cranks)}
             search.follow(
-                Adjustment(far={key: _SHORTEST * length}, size=True) for key, length in keys.items()
+                Adjustment(far={f"crank[{k}].length_mm": _SHORTEST * one["length_mm"]}, size=True)
+                for k, one in enumerate(search.document.get("crank", ()))
             )
 
     def moves(self, changes: Changes, design: Any) -> bool:  # noqa: ARG002
