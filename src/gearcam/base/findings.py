@@ -21,7 +21,7 @@ from gearcam.base.quantities import NUMBER, Param
 
 Severity = Literal["note", "warning", "error"]
 
-Relation = Literal["at most", "at least"]
+Relation = Literal["at most", "at least", "about"]
 """How a value keeps its limit."""
 
 
@@ -40,8 +40,9 @@ class Finding(ShortRepr):
     value, limit : float or None
         The value found and its limit, in `unit`; a value that is rounding noise relative to the
         limit becomes 0.
-    relation : {"at most", "at least"}, optional
-        How a value keeps this limit; a finding may be about a value that does.
+    relation : {"at most", "at least", "about"}, optional
+        How a value keeps this limit; ``about``: it is at least about this. A finding may be about a
+        value that does.
     unit : str
         Unit of both.
     where : str
@@ -97,7 +98,7 @@ class Remark(NamedTuple):
     ----------
     message, where, value
         As in a `Finding`.
-    severity, unit : str
+    severity, unit, relation : str
         If they differ from those of the check.
     limit : float
         In `unit`, if it differs from that of the check; infinite: no limit.
@@ -109,6 +110,7 @@ class Remark(NamedTuple):
     severity: Severity | None = None
     unit: str = ""
     limit: float = math.nan
+    relation: Relation | None = None
 
 
 Limits = Mapping[str, float | tuple[float, ...]]
@@ -203,7 +205,7 @@ def check(
             message=remark.message,
             value=remark.value,
             limit=bound if limited else None,
-            relation=relation if limited else None,
+            relation=(remark.relation or relation) if limited else None,
             unit="" if remark.value is None else remark.unit or unit,
             where=remark.where,
         )

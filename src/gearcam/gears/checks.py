@@ -406,6 +406,7 @@ def undercut(subject: CheckedPair, limit: float) -> Iterator[Remark]:
             gear.toothing.teeth,
             severity=severity,
             limit=fewest,
+            relation="about",
         )
 
 
