@@ -84,8 +84,8 @@ class TriangleMesh(ShortRepr):
     curve : (b,) int array
         Number, in ``region.curves``, of the curve of each boundary vertex.
     start, end : (b,) arrays, mm
-        The edge from each boundary vertex to the next along its curve: s at both ends; the end may
-        be the curve's length.
+        The edge from each boundary vertex to the next along its curve: s at both ends. The start is
+        below the curve's length, the end may be beyond it.
     follows : (b,) int array
         The next boundary vertex.
     """
@@ -221,10 +221,12 @@ class _Border:
 
 def _border(region: Region, curve: Ints, start: Array, end: Array) -> _Border:
     points = np.empty(len(curve), dtype=np.complex128)
+    turns = np.floor(start / np.array([one.length for one in region.curves])[curve])
     for number, one in enumerate(region.curves):
         here = curve == number
         points[here] = one.at(start[here])[0]
-    return _Border(points=points, curve=curve, start=start, end=end)
+        turns[here] *= one.length
+    return _Border(points=points, curve=curve, start=start - turns, end=end - turns)
 
 
 def _bordered(region: Region, field: SizeField) -> _Border:
@@ -266,7 +268,7 @@ def _candidates(field: SizeField, around: Plane) -> tuple[list[Plane], list[Arra
     step = field.largest
     size = high - low
     rows = np.arange(math.ceil(size.imag / (step * _SLOPE.imag)) + 1)
-    columns = np.arange(math.ceil(size.real / step) + 1)
+    columns = np.arange(-1, math.ceil(size.real / step) + 1)  # cells lean to the right
     points = (
         low + step * (columns + (rows % 2)[:, None] / 2 + 1j * _SLOPE.imag * rows[:, None])
     ).ravel()

@@ -213,6 +213,12 @@ class BoundaryCurve(ShortRepr):
         after = np.array([run.tangents[0] for run in self.runs])
         return self.starts[np.abs(np.angle(after * np.conj(np.roll(before, 1)))) > _CORNER]
 
+    @property
+    def held_ends(self) -> Array:
+        """Arc lengths s at which held and free runs meet, rising, mm."""
+        held = np.array([run.held for run in self.runs])
+        return self.starts[held != np.roll(held, 1)]
+
     @cached_property
     def places(self) -> Array:
         """Arc lengths s of all points, and between them where they are far apart, rising, mm."""
@@ -407,8 +413,9 @@ def arc_run(start: complex, end: complex, bulge: float = 0.0, *, held: bool = Fa
 def region_of(part: Part, held_diameter: float | None = None) -> Region:
     """Return the region of a part, that of its lowest step, and where it is held.
 
-    A wheel is held on its bore; without one, on a circle of half the smallest root diameter, whose
-    disc is left out. A ring is held on its outside, a rack or a sector of a ring on its back.
+    A wheel is held on its bore; without one, on a circle of half the smallest root diameter, or
+    within its openings if that circle cuts one; the disc is left out. A ring is held on its
+    outside, a rack or a sector of a ring on its back.
 
     Parameters
     ----------
@@ -464,26 +471,29 @@ def _on_its_back(outer: BoundaryCurve) -> BoundaryCurve:
 def _on_circle(outer: BoundaryCurve, openings: Sequence[Opening], diameter: float | None) -> Region:
     """Return a wheel without a disc around the shaft, held there."""
     roots = float(np.abs(outer.at(outer.places)[0]).min())
-    diameter = 2.0 * _HELD * roots if diameter is None else diameter
-    radius, limit = 0.5 * diameter, 2.0 * roots / _APART
+    holes = [curve_of(one.shape, hole=True) for one in openings]
+    away = [np.abs(hole.at(hole.places)[0]) for hole in holes]
+    least = [2.0 * _APART * float(one.max()) for one in away]
+    most = [2.0 * float(one.min()) / _APART for one in away]
+    if diameter is None:
+        diameter = 2.0 * _HELD * roots
+        if any(low < diameter < high for low, high in zip(most, least, strict=True)):
+            diameter = min(most)
+    limit = 2.0 * roots / _APART
     if diameter > limit:
         what = "the held circle reaches the roots of the teeth"
         raise beyond_limit(what, _KEY, diameter, limit, far=limit)
-    holes = [curve_of(Circle(center=0j, diameter=diameter), hole=True, held=True)]
-    for one in openings:
-        hole = curve_of(one.shape, hole=True)
-        away = np.abs(hole.at(hole.places)[0])
-        least = 2.0 * _APART * float(away.max())
-        if one.kind == "BORE" and diameter < least:
+    for one, low, high in zip(openings, most, least, strict=True):
+        if diameter < high and one.kind == "BORE":
             what = "the held circle lies within the bore"
-            raise beyond_limit(what, _KEY, diameter, least, near=least)
-        if away.min() < radius * _APART and diameter < least:
+            raise beyond_limit(what, _KEY, diameter, high, near=high)
+        if low < diameter < high:
             what = f"the held circle cuts an opening, {one.name}"
             note = "the limit is the circle that has the opening within it"
-            raise beyond_limit(what, _KEY, diameter, least, note, near=least)
-        if away.min() > radius:
-            holes.append(hole)
-    return Region(outer=outer, holes=tuple(holes))
+            raise beyond_limit(what, _KEY, diameter, high, note, near=high)
+    circle = curve_of(Circle(center=0j, diameter=diameter), hole=True, held=True)
+    outside = (hole for hole, low in zip(holes, most, strict=True) if low >= diameter)
+    return Region(outer=outer, holes=(circle, *outside))
 
 
 def sector(region: Region, start: float, end: float, depth: float, center: complex = 0j) -> Region:

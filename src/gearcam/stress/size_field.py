@@ -108,7 +108,7 @@ def _field(bins: list[tuple[float, Any]], points: Plane, largest: float) -> Arra
 
 
 def mesh_corners(curve: BoundaryCurve, largest: float) -> Array:
-    """Return s of the corners that are vertices of every mesh, rising, mm.
+    """Return s of corners, and of ends of held runs, which are vertices of every mesh, rising, mm.
 
     Parameters
     ----------
@@ -118,18 +118,12 @@ def mesh_corners(curve: BoundaryCurve, largest: float) -> Array:
         Largest size of triangles: bends that are very tight beside it are corners too.
     """
     s, least = curve.places, _LEAST * largest
-    bend = curve.curvature(s)
-    tight = np.abs(bend) * least > _PER_CURVATURE
-    begin = np.flatnonzero(tight & ~np.roll(tight, 1))
-    sharp = []
-    for first in begin:
-        length = int(np.argmin(np.append(tight[first:], False)))
-        inner = slice(first, first + length)
-        turn = float(np.abs(np.trapezoid(bend[inner], s[inner])))
-        if turn > _SHARP:
-            sharp.append(0.5 * (s[first] + s[first + length - 1]))
-    corners = np.sort(np.concatenate([curve.corners, sharp]))
-    corners = apart(corners, least)
+    tight = np.abs(curve.curvature(s)) * least > _PER_CURVATURE
+    edges = np.flatnonzero(np.diff(tight, prepend=False, append=False))
+    before, after = s[np.maximum(edges[::2] - 1, 0)], s[np.minimum(edges[1::2], len(s) - 1)]
+    turn = np.angle(curve.at(after)[1] * np.conj(curve.at(before)[1]))
+    sharp = 0.5 * (before + after)[np.abs(turn) > _SHARP]
+    corners = apart(np.sort(np.concatenate([curve.corners, curve.held_ends, sharp])), least)
     wrapped = len(corners) > 1 and corners[0] + curve.length - corners[-1] <= least
     return corners[:-1] if wrapped else corners
 
