@@ -317,6 +317,10 @@ NUMBERS: dict[str, dict[str, Number]] = {
         "pair.travel_per_turn_mm": (lambda: 2 * math.pi * feeder_scale(), 1e-9),
         "pair.radius_mm.max": (lambda: 1.2 * feeder_scale(), 1e-10),
     },
+    "loaded_nail_machine": {
+        "pair.module_mm": (4.9229880875, 1e-10),
+        "gears[0].centrode.length_mm": (556.7768355399, 1e-10),
+    },
     "askew_pair": {
         "errors.alone.center.backlash_mm.min": (play_apart, 1e-9),
         # 2*e/(r*cos(alpha)); between phases of 10 degrees at most 0.4 % of it are missed

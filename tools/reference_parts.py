@@ -28,6 +28,7 @@ GROUPS: Final = {
     "teeth": "Law, centrodes and teeth",
     "meshing": "Meshing study (`gearcam mesh`)",
     "errors": "Errors of mounting and making (`gearcam errors`)",
+    "forces of a pair": "Forces (`gearcam forces`)",
     "parts": "Parts",
     "cams": "Motion and profile",
     "cams in space": "Walls",

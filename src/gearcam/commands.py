@@ -179,7 +179,8 @@ def studied(study: Study, design: Design, options: Options) -> Any:
     DesignError
         If designs of this kind have no such study, or a value is not allowed.
     """
-    if study.name not in KINDS[design.kind].studies:
+    known = KINDS[design.kind].studies
+    if study.name not in known:
         kinds = [kind for kind in KINDS.values() if study.name in kind.studies]
         own = as_written(KINDS[design.kind])
         message = f"this command is for designs of {' or '.join(map(as_written, kinds))}"
@@ -187,7 +188,7 @@ def studied(study: Study, design: Design, options: Options) -> Any:
         raise DesignError([Problem(message, file=design.source, key="kind", value=design.kind)])
     settings = {f"{study.table}.{key}": one for key, one in options.items() if one is not None}
     changed = design.with_(settings) if settings else design
-    study.demand(changed)
+    known[study.name].demand(changed)
     return changed
 
 

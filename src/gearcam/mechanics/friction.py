@@ -77,3 +77,46 @@ class FrictionSpec(ShortRepr):
             return 0.0
         share = self.journal_radius[1] / radius * math.sin(math.atan(self.roller))
         return math.tan(math.asin(min(share, 1.0)))
+
+
+@dataclass(frozen=True, kw_only=True)
+class WheelFrictionSpec(ShortRepr):
+    """Coefficients of friction of a pair, 0 where left out, and sizes of its bearings.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> friction = gc.WheelFrictionSpec(joint=0.1, journal_radius=(12.0, 8.0))
+    >>> [round(arm, 6) for arm in friction.journals]  # mm
+    [1.194045, 0.79603]
+    """
+
+    joint: float = _coefficient(doc="of the journals of both shafts")
+    flank: float = _coefficient(doc="of flanks that slide on each other")
+    rolling: float = param(
+        LENGTH, default=0.0, ge=0, le=LONGEST, doc="arm of rolling resistance of the flanks"
+    )
+    journal_radius: tuple[float, float] | None = param(
+        LENGTH,
+        default=None,
+        gt=0,
+        le=LONGEST,
+        both=True,
+        example=[10, 12],
+        doc="radius of the journals of driver and driven wheel",
+    )
+
+    rules = (needs("joint", "journal_radius"), needs("journal_radius", "joint"))
+
+    @property
+    def journals(self) -> tuple[float, float]:
+        """Radii of the friction circles of both shafts, mm (000, eq. 2.90)."""
+        one, two = self.journal_radius or (0.0, 0.0)
+        share = math.sin(math.atan(self.joint))
+        return one * share, two * share
+
+    @property
+    def left_out(self) -> list[str]:
+        """What has no friction, in words."""
+        named = {"flanks": self.flank, "journals": self.joint}
+        return [name for name, coefficient in named.items() if not coefficient]

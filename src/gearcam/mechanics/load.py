@@ -24,6 +24,12 @@ OF_LIFT: Final = "s"
 
 _MOST: Final = 1e9
 
+_KILO: Final = 1e3
+"""N mm of a N m."""
+
+_FARTHEST: Final = 36000
+"""Largest driver angle of a pair that turns more than once, deg."""
+
 
 class WrittenLoad:
     """How the size of a load is written: a formula in one of some variables, or rows of a table."""
@@ -102,8 +108,54 @@ class WrittenLoad:
             ) from None
 
 
+class PlacedLoad(WrittenLoad):
+    """A load that acts at all positions of a driver, or from one to another of them."""
+
+    start: float | None
+    end: float | None
+
+    @property
+    def knots(self) -> tuple[float, ...]:
+        """Where it jumps or bends, rad or mm: the first numbers of what comes after."""
+        ends = () if self.start is None or self.end is None else (self.start, self.end)
+        # the end belongs to the load
+        return (*(self.place or ()), *ends[:1], *np.nextafter(ends[1:], np.inf).tolist())
+
+    def _sizes(self, x: Array, other: Array, given: float | None, per: float) -> Array:
+        """Return its values, N or N mm.
+
+        Parameters
+        ----------
+        x, other : (n,) arrays
+            Positions of the driver, and what formulas in the other variable are of.
+        given : float or None, N or N mm
+            The size if it is constant.
+        per : float
+            Unit of formula and table in those inside: 1 of N, 1000 of N m.
+        """
+        if self.formula is not None:
+            value = per * self._formula_at(self.formula, x, other)
+        elif self.table is not None:
+            value = per * np.interp(x, np.asarray(self.place), np.asarray(self.table))
+        else:
+            value = np.full(x.shape, given)
+        if self.start is None or self.end is None:
+            return value
+        inside = (self.start <= x) & (x <= self.end)
+        around = (self.start <= x) | (x <= self.end)  # across the end of the turn
+        return np.where(inside if self.start <= self.end else around, value, 0.0)
+
+    def _formula_at(self, text: str, x: Array, other: Array) -> Array:
+        from gearcam.numeric.jets import Jet
+
+        variable, made = self.read(text)
+        first = next(iter(self._variables))
+        found = made.evaluate(Jet([x if variable == first else other]))
+        return np.asarray(found.c[0] if isinstance(found, Jet) else found) + np.zeros_like(x)
+
+
 @dataclass(frozen=True, kw_only=True)
-class LoadSpec(ShortRepr, WrittenLoad):
+class LoadSpec(ShortRepr, PlacedLoad):
     """A load on the follower: a force, of an oscillating follower a torque.
 
     It is positive where it presses the follower onto the cam, or, with `against`, always opposes
@@ -168,27 +220,12 @@ class LoadSpec(ShortRepr, WrittenLoad):
         needs("end", "start"),
     )
 
-    def _formula_at(self, text: str, x: Array, s: Array) -> Array:
-        """Return a formula's values at angles or travels, and lifts there, (n,)."""
-        from gearcam.numeric.jets import Jet
-
-        variable, made = self.read(text)
-        found = made.evaluate(Jet([s if variable == OF_LIFT else x]))
-        return np.asarray(found.c[0] if isinstance(found, Jet) else found) + np.zeros_like(x)
-
     def allowed_on(self, *, oscillating: bool) -> Iterator[Breach]:
         """Yield a force on a follower that swings, or a torque on one that does not."""
         if oscillating and self.force is not None:
             yield "force", None, "acts on a follower that swings", "torque_nm about its pivot"
         if not oscillating and self.torque is not None:
             yield "torque", None, "acts on a follower that does not swing", "force_n along its axis"
-
-    @property
-    def knots(self) -> tuple[float, ...]:
-        """Where it jumps or bends, rad or mm: the first numbers of what comes after."""
-        ends = () if self.start is None or self.end is None else (self.start, self.end)
-        # the end belongs to the load
-        return (*(self.place or ()), *ends[:1], *np.nextafter(ends[1:], np.inf).tolist())
 
     def at(self, x: Any, s: Any, ds: Any, *, per: float = 1.0) -> Array:
         """Return the load against a rise.
@@ -206,18 +243,8 @@ class LoadSpec(ShortRepr, WrittenLoad):
         -------
         (n,) array, N or N mm
         """
-        x, s = np.asarray(x, dtype=float), np.asarray(s, dtype=float)
         given = self.torque if self.force is None else self.force
-        if self.formula is not None:
-            value = per * self._formula_at(self.formula, x, s)
-        elif self.table is not None:
-            value = per * np.interp(x, np.asarray(self.place), np.asarray(self.table))
-        else:
-            value = np.full(x.shape, given)
-        if self.start is not None and self.end is not None:
-            inside = (self.start <= x) & (x <= self.end)
-            around = (self.start <= x) | (x <= self.end)  # across the end of the turn
-            value = np.where(inside if self.start <= self.end else around, value, 0.0)
+        value = self._sizes(np.asarray(x, dtype=float), np.asarray(s, dtype=float), given, per)
         return np.abs(value) * np.sign(ds) if self.against else value
 
 
@@ -251,3 +278,94 @@ class SlideLoadSpec(LoadSpec):
     end: float | None = param(
         LENGTH, default=None, ge=0, le=LONGEST, word="to", example=40, doc="where the load ends"
     )
+
+
+@dataclass(frozen=True, kw_only=True)
+class WheelLoadSpec(ShortRepr, PlacedLoad):
+    """A load on a pair: on the driven wheel or rack, or the torque with which the driver turns.
+
+    It is positive where it acts against the motion of the driven element, or drives the driver.
+    It may be constant, a formula in the driver's angle phi1 or the driven angle phi2, rad, or rows
+    that are joined by straight lines.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.WheelLoadSpec(torque=2000.0, start=1.0, end=2.0).at([0.5, 1.5], [0.0, 0.0])
+    array([   0., 2000.])
+    """
+
+    _variables: ClassVar[Mapping[str, str]] = {"phi1": "phi1", "phi2": "the driven angle phi2"}
+
+    on: str = param(
+        TEXT, default="wheel2", choices=("wheel1", "wheel2"), doc="what is loaded: driver or driven"
+    )
+    torque: float | None = param(
+        TORQUE, default=None, ge=-_MOST, le=_MOST, example=20, doc="constant torque"
+    )
+    force: float | None = param(
+        FORCE, default=None, ge=-_MOST, le=_MOST, example=500, doc="constant force on a rack"
+    )
+    formula: str | None = param(
+        TEXT,
+        default=None,
+        example="20 + 5*cos(phi1)",
+        doc="torque, N m, or force on a rack, N, as a formula in the driver's angle phi1, rad, or "
+        "in the driven angle phi2, rad",
+    )
+    table: Row | None = param(
+        default=None,
+        ge=-_MOST,
+        le=_MOST,
+        min_length=2,
+        example=[10, 25, 10],
+        doc="torques, N m, or forces on a rack, N, at the places of `at`, with straight lines "
+        "between",
+    )
+    place: Row | None = param(
+        ANGLE,
+        default=None,
+        ge=0,
+        le=_FARTHEST,
+        min_length=2,
+        word="at",
+        example=[0, 180, 360],
+        doc="driver angles of the table, from 0 over the turn, or the travel of an open pair",
+    )
+    start: float | None = param(
+        ANGLE,
+        default=None,
+        ge=0,
+        le=_FARTHEST,
+        word="from",
+        example=90,
+        doc="where the load begins",
+    )
+    end: float | None = param(
+        ANGLE, default=None, ge=0, le=_FARTHEST, word="to", example=180, doc="where the load ends"
+    )
+
+    rules = (
+        exactly_one("torque", "force", "formula", "table"),
+        needs("table", "place"),
+        needs("place", "table"),
+        needs("start", "end"),
+        needs("end", "start"),
+    )
+
+    def at(self, phi1: Any, phi2: Any, *, per: float = _KILO) -> Array:
+        """Return the load.
+
+        Parameters
+        ----------
+        phi1, phi2 : (n,) array, rad
+            Driver angles in the turn, or the travel, and driven angles.
+        per : float
+            Unit of formula and table in those inside: 1 of N, 1000 of N m.
+
+        Returns
+        -------
+        (n,) array, N mm or N
+        """
+        given = self.torque if self.force is None else self.force
+        return self._sizes(np.asarray(phi1, float), np.asarray(phi2, float), given, per)

@@ -36,6 +36,8 @@ class Contacts:
         j.
     lead : (n,) array, rad
         Angle of the driven wheel from its nominal position when this pair touches; for a rack mm.
+    drift : (n,) array
+        Derivative of the lead by the phase: by so much the ratio differs from the nominal one.
     point, force : (n,) complex arrays, mm and 1
         The point, and the unit direction of the driver's force.
     pressure_angle : (n,) array, rad
@@ -56,6 +58,7 @@ class Contacts:
     step: Ints
     pair: Ints
     lead: Array
+    drift: Array
     point: Plane
     force: Plane
     pressure_angle: Array
@@ -105,7 +108,7 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
     sf = [wheel.place(pair) for wheel in pairs.wheels]
     normal = at.normal[0]
     point = at.foot[0] + one.ahead(first, sf[0]) * normal
-    by_one, by_two, _ = at.rates
+    by_one, by_two, drift = at.rates
     g1 = side * one.regularity(first, sf[0], side)
     g2 = -side * two.regularity(second, sf[1], -side)
     way1, way2 = g1 * by_one * first.speed, g2 * by_two * second.speed
@@ -121,6 +124,7 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
         step=step,
         pair=pair,
         lead=positions.lead,
+        drift=drift,
         point=point,
         force=force,
         pressure_angle=np.arctan2(force.real, side * force.imag),

@@ -18,6 +18,9 @@ from gearcam.numeric.arrays import Array, Ints
 _PARTS: Final = 16
 """Parts of a bracket in each round."""
 
+_PEAKS: Final = 4
+"""How many of the highest peaks among samples are narrowed: others may be higher between them."""
+
 Function = Callable[[Array, Ints], Array]
 """``function(x, rows)`` of (m, k) places, in each bracket's row, and the m numbers of brackets."""
 
@@ -46,6 +49,31 @@ def changes(function: Function, low: Array, high: Array, tolerance: float) -> tu
 
     low, high, _, _ = _narrowed(function, low, high, tolerance, pick)
     return low, high
+
+
+def highest(values: Array, cuts: Ints) -> tuple[Ints, Ints]:
+    """Return the highest peaks in each row of samples.
+
+    Parameters
+    ----------
+    values : (q, n) array
+        Samples; -inf where they are not known.
+    cuts : (m,) int array
+        Where rows are not continuous, the first and the last end included.
+
+    Returns
+    -------
+    (k,) int array, (k,) int array
+        Row and column of each: the largest value among its neighbours.
+    """
+    apart = np.insert(values, cuts, -np.inf, axis=1)
+    columns = np.insert(np.arange(values.shape[1]), cuts, -1)[1:-1]
+    middle = apart[:, 1:-1]
+    peak = (middle > apart[:, :-2]) & (middle >= apart[:, 2:])
+    heights = np.where(peak, middle, -np.inf)
+    best = np.argsort(-heights, axis=1, kind="stable")[:, :_PEAKS]
+    row, rank = np.nonzero(np.isfinite(np.take_along_axis(heights, best, axis=1)))
+    return row, columns[best[row, rank]]
 
 
 def peaks(function: Function, low: Array, high: Array, tolerance: float) -> tuple[Array, Array]:

@@ -162,6 +162,7 @@ def test_every_key_of_the_summary_is_described(name: str, tmp_path: Path) -> Non
 
 STUDIES: dict[tuple[str, str], tuple[str, dict[str, Any]]] = {
     ("gear-pair", "mesh"): ("ellipse", {"meshing.steps": 24}),
+    ("gear-pair", "forces"): ("loaded_nail_machine", {"forces.steps": 24}),
     ("gear-pair", "errors"): ("ellipse", {"errors.steps": 24}),
     ("cam", "forces"): ("valve_lever", {"forces.steps": 24}),
     ("cam", "follow"): ("tappet", {"follow.file": "profile.csv"}),

@@ -245,8 +245,8 @@ class ForcesSpec(ShortRepr):
         default=720,
         ge=12,
         le=100000,
-        doc="number of even steps of the turn or travel; both sides of knots of lift and loads, "
-        "and places of extremes, are added",
+        doc="number of even steps of the turn or travel; both sides of knots and of changes of "
+        "what carries, and places of extremes, are added",
     )
 
 

@@ -30,9 +30,6 @@ _CLOSE: Final = 1e-12
 _NARROW: Final = 1e-9
 """Width, over the turn or travel, to which an extreme is narrowed."""
 
-_PEAKS: Final = 4
-"""How many of the highest peaks among the samples are narrowed, for each quantity."""
-
 _SCALES: Final = 2
 """Number of positions that give the scale of what is rounding, before those asked for."""
 
@@ -186,7 +183,8 @@ class UnderLoad:
 
         sampled = self.statics(x, way)
         found = sought(sampled)
-        which, at = _peaks(found, np.flatnonzero(np.diff(way, prepend=0.0, append=0.0)))
+        turns = np.flatnonzero(np.diff(way, prepend=0.0, append=0.0))
+        which, at = narrowing.highest(found, turns)
         beside = self._beside(x, way, sampled, at)
 
         def function(places: Array, rows: Ints) -> Array:
@@ -234,21 +232,6 @@ class UnderLoad:
             return self.statics(more, np.concatenate([way[scales], ways]))
 
         return function
-
-
-def _peaks(values: Array, cuts: Ints) -> tuple[Ints, Ints]:
-    """Return rows and columns of the highest peaks in each row of values, (q, n).
-
-    Rows are continuous between `cuts`, the first and the last end included.
-    """
-    apart = np.insert(values, cuts, -np.inf, axis=1)
-    columns = np.insert(np.arange(values.shape[1]), cuts, -1)[1:-1]
-    middle = apart[:, 1:-1]
-    peak = (middle > apart[:, :-2]) & (middle >= apart[:, 2:])
-    heights = np.where(peak, middle, -np.inf)
-    best = np.argsort(-heights, axis=1, kind="stable")[:, :_PEAKS]
-    row, rank = np.nonzero(np.isfinite(np.take_along_axis(heights, best, axis=1)))
-    return row, columns[best[row, rank]]
 
 
 def largest_pressure(result: MadeCam) -> float:

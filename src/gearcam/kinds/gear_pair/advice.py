@@ -78,6 +78,8 @@ class PairAdvice(Advice):
         pair = search.result.design.pair
         if of_teeth or pair.type == "internal":
             search.follow(milder(search.result.design.law, pair.teeth[0] / pair.teeth[1]))
+        if not (of_teeth or search.found) and _is_narrow(refusal):
+            search.follow(_more_teeth(search, 0.0))
         if all(key.startswith("law.") for remedy in search.found for key in remedy.changes):
             any(search.along(step) for step in _larger_ring(search))
 
@@ -97,6 +99,12 @@ class PairAdvice(Advice):
         """Return whether a `design` has another centre distance with `changes`."""
         by_module = design.pair.module is not None and "pair.module_mm" not in changes
         return by_module and "pair.teeth" in changes
+
+
+def _is_narrow(refusal: InfeasibleError | None) -> bool:
+    """Return whether a `refusal` is of a wheel that has too little room in it."""
+    changes = [{**one.near, **one.far} for one in refusal.adjustments] if refusal else []
+    return any(key.startswith("blank.") for one in changes for key in one)
 
 
 def _racks(search: Search) -> Iterator[Adjustment]:

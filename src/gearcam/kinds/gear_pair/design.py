@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from typing import Any, Final, TypeGuard
 
 from gearcam.base.brought import group_of
+from gearcam.base.display import ShortRepr
 from gearcam.base.quantities import COUNT, param
 from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.base.rules import Breach, Rule, Values, at_most, only_with
@@ -21,6 +22,10 @@ from gearcam.gears.subject import KIND as TEETH
 from gearcam.kinds.shared import ACCURACY, AccuracySpec, GoalSpec
 from gearcam.laws.ratio import LAWS
 from gearcam.mechanics.drive import DriveSpec
+from gearcam.mechanics.friction import WheelFrictionSpec
+from gearcam.mechanics.load import WheelLoadSpec
+from gearcam.mechanics.material import MaterialSpec
+from gearcam.meshing.force_checks import KIND as FORCES
 from gearcam.meshing.settings import ERRORS, ErrorsSpec, MeshingSpec
 from gearcam.meshing.settings import KIND as MESHING
 from gearcam.parts.blank import KIND as PARTS
@@ -52,6 +57,15 @@ STUDIES: Final = studies_of(
         table="errors",
         compute=deferred(f"{_HERE}.errors:study_errors"),
         options={"eccentricity_deg": "eccentricity-angle", "file": "pitch"},
+    ),
+    Study(
+        name="forces",
+        key="forces",
+        doc="Compute forces, torque, efficiency and contact pressure; write DIR/NAME/forces.csv.",
+        done="computed",
+        table="forces",
+        compute=deferred(f"{_HERE}.forces:study_forces"),
+        demand=deferred(f"{_HERE}.forces:demand"),
     ),
     ACCURACY,
 )
@@ -91,6 +105,27 @@ class PairOutputSpec(OutputSpec):
     )
 
 
+@dataclass(frozen=True, kw_only=True)
+class PairForcesSpec(ShortRepr):
+    """Phases of the study of forces.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.PairForcesSpec(steps=360)
+    PairForcesSpec(steps=360)
+    """
+
+    steps: int = param(
+        COUNT,
+        default=720,
+        ge=12,
+        le=100000,
+        doc="number of even steps of the turn or travel; both sides of knots and of changes of "
+        "what carries, and places of extremes, are added",
+    )
+
+
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class GearPairDesign(Design):
     """The design of a pair of non-circular gears (see `Design`).
@@ -117,6 +152,14 @@ class GearPairDesign(Design):
         Phases and mounting of a meshing study.
     errors : ErrorsSpec
         Errors of mounting and making, for their study.
+    load : sequence of WheelLoadSpec
+        Loads on the driven element, or torques of the driver.
+    friction : WheelFrictionSpec
+        Coefficients of friction, bearings.
+    material : MaterialSpec
+        Elasticity and strength of both wheels.
+    forces : PairForcesSpec
+        Phases of the study of forces.
     goal : GoalSpec
         What `gearcam optimize` seeks.
     accuracy : AccuracySpec
@@ -142,6 +185,10 @@ class GearPairDesign(Design):
     output: PairOutputSpec = field(default_factory=PairOutputSpec)
     meshing: MeshingSpec = field(default_factory=MeshingSpec)
     errors: ErrorsSpec = field(default_factory=ErrorsSpec)
+    load: tuple[WheelLoadSpec, ...] = ()
+    friction: WheelFrictionSpec = field(default_factory=WheelFrictionSpec)
+    material: MaterialSpec = field(default_factory=MaterialSpec)
+    forces: PairForcesSpec = field(default_factory=PairForcesSpec)
     accuracy: AccuracySpec = field(default_factory=AccuracySpec)
     goal: GoalSpec = field(default_factory=GoalSpec)
 
@@ -180,14 +227,40 @@ def planetary(document: Mapping[str, Any]) -> Fault | None:
     )
 
 
-def problems(document: Mapping[str, Any], _: Examined) -> Iterator[Fault]:
-    """Yield what is wrong between the tables of a `document`."""
+def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
+    """Yield what is wrong between the tables of a `document`, of which valid parts are `found`."""
     pair, law, blank = (document.get(title) for title in ("pair", "law", "blank"))
-    if isinstance(law, Mapping) and law.get("type") == "rack":
+    on_rack = isinstance(law, Mapping) and law.get("type") == "rack"
+    yield from _load_faults(found.parts.get("load", ()), document, on_rack=on_rack)
+    radii = getattr(found.parts.get("friction"), "journal_radius", None)
+    if on_rack and radii and radii[0] != radii[1]:
+        message = "wheel 2 is a rack and has no journal"
+        yield Fault(("friction", "journal_radius_mm"), message, allowed="one radius")
+    if on_rack:
         yield from _unmade(blank, _OF_HOLES, "is a rack and has no openings and no hub")
     elif isinstance(pair, Mapping) and pair.get("type") == "internal":
         outside = "; the outside of the ring is set in [ring]"
         yield from _unmade(blank, _OF_SHAFT, "is a ring and has no shaft", outside)
+
+
+def _load_faults(
+    loads: Sequence[WheelLoadSpec], document: Mapping[str, Any], *, on_rack: bool
+) -> Iterator[Fault]:
+    """Yield loads that do not suit what they act on, or act on both elements."""
+    for number, one in enumerate(loads):
+        key, slides = ("load", number), on_rack and one.on == "wheel2"
+        if one.on != loads[0].on:
+            message = f"{show(one.on)}: the torque of one wheel follows from that of the other"
+            yield Fault((*key, "on"), message, one.on, f"{show(loads[0].on)}, as the first load")
+        if slides and one.torque is not None:
+            message, value = "acts on a rack, which does not turn", document["load"][number]
+            yield Fault((*key, "torque_nm"), message, value["torque_nm"], "force_n")
+        if not slides and one.force is not None:
+            message, value = "acts on a wheel, which turns", document["load"][number]
+            yield Fault((*key, "force_n"), message, value["force_n"], "torque_nm")
+        if on_rack and one.formula is not None and one.read(one.formula)[0] == "phi2":
+            message = "a rack has no angle phi2"
+            yield Fault((*key, "formula"), message, one.formula, "a formula of phi1")
 
 
 def _tooth_breaches(values: Values) -> Iterator[Breach]:
@@ -264,9 +337,10 @@ KIND: Final = Kind(
         "gearcam.laws.row_checks",
         "gearcam.meshing.checks",
         "gearcam.meshing.error_checks",
+        "gearcam.meshing.force_checks",
         "gearcam.parts.checks",
     ),
-    check_groups=(TEETH, "rows of tables", MESHING, ERRORS, PARTS),
+    check_groups=(TEETH, "rows of tables", MESHING, ERRORS, FORCES, PARTS),
     example={
         "law": {
             "type": "phases",

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
-from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
+from gearcam.kinds.gear_pair.design import GearPairDesign, PairForcesSpec, PairOutputSpec
 from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.kinds.shared import AccuracySpec, GoalSpec
 from gearcam.mechanics.drive import DriveSpec
+from gearcam.mechanics.friction import WheelFrictionSpec
+from gearcam.mechanics.load import WheelLoadSpec
+from gearcam.mechanics.material import MaterialSpec
 from gearcam.meshing.settings import ErrorsSpec, MeshingSpec
 from gearcam.parts.blank import Blank
 
 __all__ = [
     "AccuracySpec", "Blank", "DriveSpec", "ErrorsSpec", "GearPairDesign", "GearPairResult",
-    "GoalSpec",
-    "MeshingSpec", "PairOutputSpec", "PairSpec", "Rack", "RingSpec", "StepsSpec",
+    "GoalSpec", "MaterialSpec", "MeshingSpec", "PairForcesSpec", "PairOutputSpec", "PairSpec",
+    "Rack", "RingSpec", "StepsSpec", "WheelFrictionSpec", "WheelLoadSpec",
 ]  # fmt: skip
 
 PUBLIC = {name: globals()[name] for name in __all__}

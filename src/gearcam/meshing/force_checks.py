@@ -1,0 +1,151 @@
+"""The checks of a pair's study of forces; importing this module registers them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from gearcam.base.display import ShortRepr
+from gearcam.base.findings import Remark, check
+from gearcam.base.quantities import MPA, TORQUE, Param
+from gearcam.laws.ratio.span import angle_text
+from gearcam.mechanics.hertz import FIRST_YIELD
+from gearcam.meshing.drive_checks import ranges_text
+from gearcam.meshing.forces import ToothForces
+from gearcam.numeric.arrays import Array, Mask
+
+KIND: Final = "forces of a pair"
+"""Registered checks of a study of forces."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class LoadedPair(ShortRepr):
+    """A pair under its load.
+
+    Parameters
+    ----------
+    forces : ToothForces
+        The forces at n phases.
+    pressure : (k,) array, MPa
+        Contact pressure of each; nan where nothing carries.
+    half_width : (k,) array, mm
+        Half the width of each contact.
+    yields : float or None, MPa
+        The lower yield stress.
+    """
+
+    forces: ToothForces
+    pressure: Array
+    half_width: Array
+    yields: float | None
+
+    def at(self, index: int) -> str:
+        """Return a phase in words."""
+        return angle_text(float(self.forces.phi1[index]))
+
+    def stretches(self, mask: Mask) -> str:
+        """Return in words where a mask holds."""
+        rows = np.flatnonzero(mask)
+        groups = np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
+        phi1 = self.forces.phi1
+        return ranges_text([(float(phi1[one[0]]), float(phi1[one[-1]])) for one in groups])
+
+
+@check("self-locking", kind=KIND, relation="at least", severity="error")
+def self_locking(loaded: LoadedPair, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Report where friction locks the pair: no torque of the driver moves the load.
+
+    Looks at: the share of the tooth force's effect that friction leaves.
+    """
+    locked = loaded.forces.locked
+    if locked.any():
+        least = float(loaded.forces.reserve[locked].min())
+        yield Remark(
+            "Friction locks the pair: less friction, or a smaller pressure angle frees it.",
+            loaded.stretches(locked),
+            least,
+            limit=0.0,
+        )
+
+
+@check("unstated-forces", kind=KIND)
+def unstated_forces(loaded: LoadedPair, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Warn of phases in which no flanks touch: their forces are not stated.
+
+    Looks at: contacts of the flanks that the load presses together.
+    """
+    apart = ~loaded.forces.driven
+    if apart.any():
+        yield Remark(
+            "No flanks touch here, and forces on tooth edges are not computed: these phases are in "
+            "no largest value.",
+            loaded.stretches(apart),
+        )
+
+
+@check("load-reverses", kind=KIND, severity="note")
+def load_reverses(loaded: LoadedPair, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Note that the load changes its direction: teeth cross the backlash and hit the other flank.
+
+    Looks at: which flanks carry.
+    """
+    back = loaded.forces.back
+    if back.any() and not back.all():
+        yield Remark(
+            "The load turns the driver here: teeth cross the backlash where it changes, and hit. "
+            "Impacts are not in these forces.",
+            loaded.stretches(back),
+        )
+
+
+_PRESSURE: Final = (
+    "contact_pressure",
+    Param(MPA, ge=0, le=1e5, doc="largest contact pressure; 0: 1.79 times the yield stress"),
+    0.0,
+)
+
+
+@check("contact-pressure", kind=KIND, limit=_PRESSURE, relation="at most", unit="MPa")
+def contact_pressure(loaded: LoadedPair, limit: float) -> Iterator[Remark]:
+    """Warn of a contact pressure at which flanks wear or yield.
+
+    Looks at: Hertz pressure of all contacts; without a limit against 1.79 times the lower yield
+    stress, where a line contact first yields, if one is given.
+    """
+    most = limit or FIRST_YIELD * (loaded.yields or np.inf)
+    if np.isnan(loaded.pressure).all():
+        return
+    worst = int(np.nanargmax(loaded.pressure))
+    found = float(loaded.pressure[worst])
+    if found > most:
+        yield Remark(
+            "The contact pressure is too high: wider or larger wheels, or a smaller load lower it.",
+            loaded.at(int(loaded.forces.teeth.points.step[worst])),
+            found,
+            limit=most,
+        )
+
+
+_TORQUE: Final = (
+    "drive_torque",
+    Param(TORQUE, ge=0, le=1e9, doc="largest torque of the driver; 0: no limit"),
+    0.0,
+)
+
+
+@check("drive-torque", kind=KIND, limit=_TORQUE, relation="at most", unit="N m")
+def drive_torque(loaded: LoadedPair, limit: float) -> Iterator[Remark]:
+    """Warn if the pair needs more torque than its drive has.
+
+    Looks at: largest torque of the driver over the turn, with all friction.
+    """
+    torque = loaded.forces.torque
+    if not limit or np.isnan(torque).all():
+        return
+    worst = int(np.nanargmax(torque))
+    found, most = float(torque[worst]) / TORQUE.factor, limit / TORQUE.factor
+    if found > most:
+        yield Remark("The pair needs more torque than the drive has.", loaded.at(worst), found)

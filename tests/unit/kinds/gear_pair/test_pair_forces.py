@@ -1,0 +1,146 @@
+"""The study of forces of a pair: its file, facts, findings, and what it refuses."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gearcam
+from gearcam.base.errors import DesignError
+from helpers_remedies import CIRCLE, DOOR, ELLIPSE, RING, pair
+
+LOAD = [{"torque_nm": 20}]
+RUBBING = {"flank": 0.08, "joint": 0.1, "journal_radius_mm": 5, "rolling_mm": 0.01}
+RACK = {"type": "rack", "r1": "20 + 3*cos(phi1)"}
+
+
+def study(law: Mapping[str, Any], teeth: list[int], load: Any = LOAD, **tables: Any) -> Any:
+    document = pair(law, teeth, load=load, **tables)
+    return gearcam.build(gearcam.design(document)).study("forces")
+
+
+PAIRS: dict[str, Any] = {
+    "closed": (ELLIPSE, [24, 24], {}),
+    "with backlash": (ELLIPSE, [24, 24], {"pair": {"backlash_mm": 0.1}}),
+    "open": (DOOR, [30, 30], {}),
+    "a ring": (CIRCLE, [20, 50], {"pair": RING}),
+    "stepped": (ELLIPSE, [24, 24], {"steps": {"count": 3}}),
+}
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_every_pair_has_forces(name: str) -> None:
+    """Loads, losses and powers agree; the sum of the tooth forces has the load's moment."""
+    law, teeth, tables = PAIRS[name]
+    made = study(law, teeth, friction=RUBBING, **tables)
+    table = made.columns
+    assert (table["load_nm"] == 20.0).all()
+    assert 0.9 < made.facts["forces.efficiency.overall"] < 1.0
+    assert made.facts["forces.power_balance"] < 1e-12
+    # forces on the driven element, about its shaft, against its journal and rolling
+    result = made.result
+    at = table["x_mm"] + 1j * table["y_mm"] - result.pair.shift
+    push = table["force_x_n"] + 1j * table["force_y_n"]
+    turn = -1.0 if name == "a ring" else 1.0
+    moment = turn * np.imag(np.conj(at) * push) - 0.01 * table["normal_n"]
+    row = table["phase"].astype(int) - 1
+    held = np.zeros(row.max() + 1)
+    held[row] = table["bearing_n"]
+    journal = 5.0 * np.sin(np.arctan(0.1)) * held
+    if name != "a ring":  # there rolling helps
+        assert np.bincount(row, moment) - journal == pytest.approx(20_000.0, rel=1e-9)
+
+
+def test_a_rack_is_pushed(tmp_path: Any) -> None:
+    made = study(RACK, [20, 20], load=[{"force_n": 100}], friction={"flank": 0.1})
+    table = made.columns
+    assert {"travel_mm", "load_n"} <= {*table}
+    along = np.bincount(table["phase"].astype(int) - 1, table["force_y_n"])
+    assert np.abs(along) == pytest.approx(100.0, rel=1e-9)
+    assert "guide of the rack" in made.facts["forces.friction"]
+    assert "forces.csv" in made.write(tmp_path).files
+
+
+def test_the_torque_of_the_driver_may_be_given() -> None:
+    """The load that it balances is then stated."""
+    first = study(ELLIPSE, [24, 24], friction=RUBBING)
+    _, at = np.unique(first.columns["phase"], return_index=True)
+    phi1, torque = (first.columns[name][at].tolist() for name in ("phi1_deg", "torque_nm"))
+    given = {"on": "wheel1", "table": torque, "at_deg": phi1}
+    made = study(ELLIPSE, [24, 24], load=[given], friction=RUBBING)
+    # straight lines lie between the rows, and degrees are rounded beside jumps
+    off = np.abs(made.columns["load_nm"] - 20.0)
+    assert np.median(off) < 1e-9
+    assert np.quantile(off, 0.9) < 1e-3
+
+
+def test_loads_add_up_and_may_be_of_a_part_of_the_turn() -> None:
+    loads = [{"torque_nm": 5}, {"formula": "2*cos(phi1)"},
+             {"torque_nm": 3, "from_deg": 300, "to_deg": 60}]  # fmt: skip
+    table = study(ELLIPSE, [24, 24], load=loads).columns
+    phi1 = table["phi1_deg"]
+    part = np.where((phi1 <= 60.0) | ((phi1 >= 300.0) & (phi1 < 360.0)) | (phi1 == 360.0), 3.0, 0.0)
+    assert table["load_nm"] == pytest.approx(5.0 + 2.0 * np.cos(np.radians(phi1)) + part)
+
+
+def test_a_load_that_pulls_is_on_the_coast_flanks() -> None:
+    made = study(ELLIPSE, [24, 24], load=[{"formula": "20*sin(phi1)"}])
+    table = made.columns
+    assert (np.sign(table["load_nm"]) == -table["side"])[table["load_nm"] != 0.0].all()
+    assert [one.code for one in made.study_findings] == ["load-reverses"]
+
+
+def test_a_phase_without_contact_has_no_forces() -> None:
+    """The row is there, and a finding says so."""
+    made = study(ELLIPSE | {"eccentricity": 0.6}, [12, 12])
+    table = made.columns
+    apart = np.isnan(table["normal_n"])
+    assert apart.any()
+    assert np.isnan(table["torque_nm"][apart]).all()
+    assert "unstated-forces" in {one.code for one in made.study_findings}
+    assert "forces.efficiency" not in made.facts
+
+
+def test_limits_of_pressure_and_torque() -> None:
+    limits = {"contact_pressure_mpa": 100, "drive_torque_nm": 10}
+    found = {one.code: one for one in study(ELLIPSE, [24, 24], limits=limits).study_findings}
+    assert {*found} == {"contact-pressure", "drive-torque"}
+    assert found["drive-torque"].limit == 10.0
+    assert found["contact-pressure"].value > 100.0
+    soft = study(ELLIPSE, [24, 24], material={"yield_mpa": [200, 300]})
+    (one,) = soft.study_findings
+    assert one.limit == pytest.approx(358.0)
+
+
+def test_extremes_are_those_between_the_steps_too() -> None:
+    """Facts of few steps are those of many."""
+    few, many = (
+        study(ELLIPSE, [24, 24], friction=RUBBING, forces={"steps": steps}) for steps in (60, 6000)
+    )
+    for name in ("normal_n", "bearing_n", "torque_nm", "pressure_mpa"):
+        for end in ("min", "max"):
+            key = f"forces.{name}.{end}"
+            assert few.facts[key] == pytest.approx(many.facts[key], rel=1e-6), key
+
+
+REFUSED: dict[str, tuple[Any, Any, str]] = {
+    "nothing": (ELLIPSE, [], "nothing acts on the pair"),
+    "both wheels": (ELLIPSE, [*LOAD, {"on": "wheel1", "torque_nm": 3}], "follows from"),
+    "a force on a wheel": (ELLIPSE, [{"force_n": 3}], "acts on a wheel"),
+    "a torque on a rack": (RACK, LOAD, "acts on a rack"),
+    "phi2 of a rack": (RACK, [{"formula": "phi2"}], "no angle phi2"),
+    "a short table": (ELLIPSE, [{"table": [1, 2], "at_deg": [0, 300]}], "ends inside the turn"),
+    "a late table": (ELLIPSE, [{"table": [1, 2], "at_deg": [0, 400]}], "beyond the turn"),
+    "a pole": (ELLIPSE, [{"formula": "1/phi1"}], "is not finite at phi1 = 0 deg"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_is_refused(name: str) -> None:
+    law, load, words = REFUSED[name]
+    with pytest.raises(DesignError, match=re.escape(words)):
+        study(law, [24, 24], load=load)
