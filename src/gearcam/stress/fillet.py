@@ -19,7 +19,7 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.stress.elastic import ElasticBody, edge_slopes
-from gearcam.stress.hertz_load import FlankLoad
+from gearcam.stress.hertz_load import SIDE, FlankLoad, past
 from gearcam.stress.region import BoundaryCurve
 from gearcam.stress.size_field import CONCAVE
 
@@ -27,7 +27,7 @@ _BEYOND: Final = 0.35
 """How far beyond its ends a fillet is looked at, in modules: a peak may be where it joins the
 flank. As far from a sharp corner nothing is."""
 
-_BESIDE: Final = (1.6, 0.15)
+BESIDE: Final = (1.6, 0.15)
 """How far from a load nothing is looked at: so many half-widths and so many modules. There the
 pressure itself stresses the edge."""
 
@@ -36,9 +36,6 @@ _FITTED: Final = 7
 
 _LEAST: Final = 5
 """Least number of them: three would always be met."""
-
-_SIDE: Final = 1e-9
-"""Distance of both sides of a corner from it, over the length of the curve: rounding."""
 
 _GAUSS: Final = np.array([-1.0, 1.0]) / np.sqrt(3.0)
 """Gauss points of an edge, from -1 to 1."""
@@ -82,13 +79,6 @@ class StressPeak(ShortRepr):
     s: float
     point: complex
     misfit: float = 0.0
-
-
-def _past(curve: BoundaryCurve, s: Array, place: float) -> Array:
-    """Return by how much `s` is past a place, mm, the shorter way round the curve."""
-    half = 0.5 * curve.length
-    made: Array = (s - place + half) % curve.length - half
-    return made
 
 
 def _edges(body: ElasticBody, curve: int) -> tuple[Ints, Array, Array]:
@@ -143,7 +133,7 @@ def mean_stress(body: ElasticBody, curve: int, s: float, within: float) -> Plane
         The mean stress is the sum of the products, of vectors, with displacements of the nodes.
     """
     nodes, places, half = _edges(body, curve)
-    away = np.abs(_past(body.mesh.region.curves[curve], places, s))
+    away = np.abs(past(body.mesh.region.curves[curve], places, s))
     weights = np.where(away <= max(within, float(away.min())), half, 0.0)
     slopes = edge_slopes(_GAUSS)
     along = body.mesh.nodes[nodes] @ slopes.T
@@ -184,22 +174,20 @@ def fillets(curve: BoundaryCurve, module: float) -> Array:
 
 def sharp_corners(curve: BoundaryCurve) -> Array:
     """Return s, (k,), mm, of the re-entrant corners of a curve that are free to move."""
-    before, after = (curve.corners + side * _SIDE * curve.length for side in (-1.0, 1.0))
+    before, after = (curve.corners + side * SIDE * curve.length for side in (-1.0, 1.0))
     turn = np.angle(curve.at(after)[1] * np.conj(curve.at(before)[1]))
     return curve.corners[(turn < 0.0) & ~(curve.held(before) & curve.held(after))]
 
 
-def looked_at(edge: EdgeStress, module: float, load: FlankLoad) -> Mask:
-    """Return at which places of the curve with the teeth peaks are looked for.
+def in_fillets(edge: EdgeStress, module: float) -> Mask:
+    """Return which places of a curve, (g,), are in its fillets, and not near a sharp corner.
 
     Parameters
     ----------
     edge : EdgeStress
-        Its places.
+        Places on the curve with the teeth.
     module : float, mm
         Module.
-    load : FlankLoad
-        The load.
 
     Returns
     -------
@@ -212,11 +200,30 @@ def looked_at(edge: EdgeStress, module: float, load: FlankLoad) -> Mask:
         number = np.searchsorted(stretches[:, 0], s + turn, side="right") - 1
         ends = np.append(stretches[:, 1], -np.inf)  # that of number -1, before the first
         made |= s + turn <= ends[number]
-    beside = _BESIDE[0] * load.half_width + _BESIDE[1] * module
-    made &= np.abs(_past(curve, s, load.place)) > beside
     for corner in sharp_corners(curve):
-        made &= np.abs(_past(curve, s, corner)) > _BEYOND * module
+        made &= np.abs(past(curve, s, corner)) > _BEYOND * module
     return made
+
+
+def looked_at(edge: EdgeStress, module: float, load: FlankLoad) -> Mask:
+    """Return where peaks are looked for: in fillets, and not beside the load.
+
+    Parameters
+    ----------
+    edge : EdgeStress
+        Places on the curve with the teeth.
+    module : float, mm
+        Module.
+    load : FlankLoad
+        The load, on the same curve.
+
+    Returns
+    -------
+    (g,) bool array
+    """
+    beside = BESIDE[0] * load.half_width + BESIDE[1] * module
+    away = np.abs(past(edge.curve, edge.s, load.place))
+    return in_fillets(edge, module) & (away > beside)
 
 
 def peak(edge: EdgeStress, looked: Mask, sign: int) -> StressPeak:
@@ -247,7 +254,7 @@ def peak(edge: EdgeStress, looked: Mask, sign: int) -> StressPeak:
     near = near[joined]
     s, stress, misfit = float(edge.s[top]), float(edge.stress[top]), 0.0
     if len(near) >= _LEAST:
-        away = _past(edge.curve, edge.s[near], s)
+        away = past(edge.curve, edge.s[near], s)
         scale = float(np.ptp(away))
         powers = (away / scale)[:, None] ** np.arange(3)
         level, slope, bend = np.linalg.lstsq(powers, edge.stress[near], rcond=None)[0]

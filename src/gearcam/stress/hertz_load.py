@@ -29,7 +29,7 @@ from gearcam.stress.region import BoundaryCurve, Region
 _POINTS: Final = 400
 """Places along the arc at which the pressure is taken."""
 
-_SIDE: Final = 1e-9
+SIDE: Final = 1e-9
 """Distance of both sides of a corner from it, over the length of the curve: rounding."""
 
 _ASKEW: Final = 20.0
@@ -147,7 +147,7 @@ def flank_load(
     moved = min(max(place, low + half_width), high - half_width)
     return FlankLoad(
         curve=region.toothed,
-        place=moved,
+        place=moved % region.teeth.length,
         half_width=half_width,
         force=force * direction * (1.0 - 1j * friction),
         moved=moved - place,
@@ -162,9 +162,9 @@ def _on_flank(
     s = curve.nearest(np.array([point]))
     reach += 2.0 * float(np.abs(curve.at(s)[0] - point)[0])
     # within reach of a corner the point may belong to either side of it
-    near = corners[np.abs((corners - s + 0.5 * length) % length - 0.5 * length) <= reach]
+    near = corners[np.abs(past(curve, corners, float(s[0]))) <= reach]
     places = np.concatenate([s, near, near])
-    inside = places + _SIDE * length * np.repeat([0.0, -1.0, 1.0], [1, len(near), len(near)])
+    inside = places + SIDE * length * np.repeat([0.0, -1.0, 1.0], [1, len(near), len(near)])
     off = np.abs(np.angle(1j * curve.at(inside)[1] / direction))
     best = int(off.argmin())
     if math.degrees(off[best]) > _ASKEW:
@@ -176,6 +176,13 @@ def _on_flank(
     low = max(corner for corner in (*corners, *(corners - length)) if corner <= place)
     high = min(corner for corner in (*corners, *(corners + length)) if corner > place)
     return float(places[best]), float(low), float(high)
+
+
+def past(curve: BoundaryCurve, s: Array, place: float) -> Array:
+    """Return by how much `s` is past a `place` of a closed `curve`, mm, the shorter way round."""
+    half = 0.5 * curve.length
+    made: Array = (s - place + half) % curve.length - half
+    return made
 
 
 def nodal_forces(mesh: CurvedMesh, loads: Sequence[FlankLoad]) -> Plane:
