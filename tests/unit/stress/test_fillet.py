@@ -70,6 +70,24 @@ def test_what_is_not_looked_at_does_not_bend_the_parabola() -> None:
     assert peak(on_circle(stress, s), s > 6.95, 1).stress == pytest.approx(50.0, abs=1e-9)
 
 
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_nor_what_is_looked_at_beyond_a_gap(side: float) -> None:
+    s = np.linspace(0.0, 20.0, 200, endpoint=False)
+    past = side * (s - 7.0)
+    stress = np.where(past > 0.15, -1e6, 50.0 - 3.0 * past**2)
+    looked = (past < 0.05) | (past > 0.15)
+    found = peak(on_circle(stress, s), looked, 1)
+    assert (found.stress, found.s) == pytest.approx((50.0, 7.0), abs=0.1)
+
+
+def test_a_point_that_juts_out_of_a_valley_counts_itself() -> None:
+    s = np.linspace(0.0, 20.0, 200, endpoint=False)
+    stress = np.where(np.abs(s - 7.0) < 0.35, 100.0 * (s - 7.0) ** 2, 0.0)
+    stress[70] = 10.0
+    found = peak(on_circle(stress, s), everywhere(s), 1)
+    assert (found.stress, found.s) == pytest.approx((10.0, 7.0))
+
+
 @pytest.fixture(scope="module")
 def held_disc() -> ElasticBody:
     hole = curve_of(Circle(center=0j, diameter=6.0), hole=True, held=True)

@@ -61,6 +61,12 @@ def test_a_point_on_the_wrong_side_of_a_corner_is_on_its_flank_all_the_same() ->
     assert load.place == pytest.approx(19.5, abs=1e-6)
 
 
+def test_a_point_off_the_boundary_by_more_than_the_contact_is_wide_is_on_its_flank_too() -> None:
+    """As on a wheel from whose outline a clearance was taken."""
+    load = flank_load(SQUARE, 9.7 + 10.2j, -1.0, 1.0, half_width=0.1)
+    assert load.place == pytest.approx(19.9, abs=1e-6)
+
+
 @pytest.mark.parametrize("point", [0j, 0.2 + 0j, 0.2j])
 def test_the_corner_at_the_start_of_a_curve_is_like_others(point: complex) -> None:
     below = flank_load(SQUARE, point, 1.0j, 1.0, half_width=0.5)
