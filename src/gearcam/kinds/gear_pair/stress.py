@@ -104,7 +104,7 @@ def study_stress(result: GearPairResult, progress: Progress) -> StudyResult:
         study=result.kind.studies["stress"],
         file="stress.csv",
         table=_columns(pair, entries, stressed),
-        group=_facts(pair, entries, stressed),
+        group=_facts(pair, entries, stressed, complete=not interrupted),
         study_findings=run_checks(STRESS, stressed, result.design.limits),
         drawn=partial(_charts, pair, entries),
         pages={"stiffness.csv": table_bytes(_stiffness(pair, entries))},
@@ -221,7 +221,9 @@ def _stiffness(pair: ElasticPair, entries: Entries) -> dict[str, Any]:
     }
 
 
-def _facts(pair: ElasticPair, entries: Entries, stressed: StressedPair) -> Tree:
+def _facts(
+    pair: ElasticPair, entries: Entries, stressed: StressedPair, *, complete: bool
+) -> Tree:
     """Return the facts of the study."""
     on_rack = pair.result.pair.on_rack
     lag, unit = (entries.lag, "mm") if on_rack else (entries.lag / ARCSEC.factor, "arcsec")
@@ -230,11 +232,11 @@ def _facts(pair: ElasticPair, entries: Entries, stressed: StressedPair) -> Tree:
     carrying = entries.pairs[entries.step] == 2
     twice = entries.share[carrying & (entries.share >= 0.5)]
     low, high = (formatted(float(one), 4) for one in (lag.min(), lag.max()))
-    held = [_held(region) for region in pair.regions]
+    held = [one for one in map(_held, pair.regions) if one is not None]
     return {
         "plane": pair.spec.plane,
         "phases": len(_phases(pair)),
-        "held_diameter_mm": held,
+        "held_diameter_mm": held or None,
         "gears": [_of_wheel(entries, stressed, wheel) for wheel in WHEELS],
         f"lag_{unit}": {
             **extent(float(lag.min()), float(lag.max())),
@@ -258,7 +260,7 @@ def _facts(pair: ElasticPair, entries: Entries, stressed: StressedPair) -> Tree:
         )
         if twice.size
         else None,
-        "complete": True,
+        "complete": complete,
     }
 
 
