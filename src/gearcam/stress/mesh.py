@@ -62,8 +62,8 @@ _SMOOTHINGS: Final = 12
 _ANEW: Final = 3
 """Rounds of smoothing after which points are joined anew."""
 
-_HALVINGS: Final = 30
-"""Largest number of times that dropped boundary edges are halved."""
+_MORE: Final = 4
+"""Largest factor by which the halving of dropped edges may increase the boundary vertices."""
 
 _AREA: Final = 1e-9
 """Relative difference of the area of the triangles from that of the polygon: rounding."""
@@ -150,12 +150,13 @@ def graded(region: Region, points: Plane, sizes: Array, largest: float) -> Trian
     )
     border = _bordered(region, field)
     wanted = _candidates(field, border.points)
-    for _ in range(_HALVINGS):
+    most = _MORE * len(border.points)
+    while len(border.points) <= most:
         made = _filled(border, *wanted)
         if not made.dropped.any():
             return _proven(region, border, made)
         border = border.halved(region, made.dropped)
-    raise RuntimeError("a boundary edge is still dropped after it was halved many times")
+    raise RuntimeError("boundary edges are dropped however short they are: do curves cross?")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -57,6 +57,9 @@ _APART: Final = 1.01
 _THIN: Final = 0.4
 """Least share of the depth of a sector that openings must leave."""
 
+_BESIDE: Final = 0.55
+"""Share of a sector's angle, on either side of its middle, in which openings count."""
+
 _SHORT: Final = 1e-9
 """Shortest piece of a cut run, of the curve: rounding."""
 
@@ -186,6 +189,11 @@ class BoundaryCurve(ShortRepr):
         """Bulge of each run, nan for cubics."""
         return np.array([math.nan if run.bulge is None else run.bulge for run in self.runs])
 
+    @cached_property
+    def steps(self) -> tuple[Array, Array]:
+        """Arc lengths s at the ends of all steps, (n + 1,), mm, and their mean curvatures, (n,)."""
+        return self._ends, np.concatenate([run.bends for run in self.runs])
+
     @property
     def length(self) -> float:
         """Length, mm."""
@@ -268,7 +276,7 @@ class BoundaryCurve(ShortRepr):
         s = self._wrapped(s)
         step = self._step(s)
         run, middles = self._run[step], 0.5 * (self._ends[1:] + self._ends[:-1])
-        bends = np.concatenate([run.bends for run in self.runs])
+        bends = self.steps[1]
         beside = np.clip(step + np.where(s < middles[step], -1, 1), 0, len(middles) - 1)
         beside = np.where(self._run[beside] == run, beside, step)
         apart = middles[beside] - middles[step]
@@ -508,7 +516,7 @@ def sector(region: Region, start: float, end: float, depth: float, center: compl
     start, end : float, mm
         s on the curve with the teeth at which it is cut, `end` after `start`: in roots.
     depth : float, mm
-        Metal below the roots. Above an opening, or within the outside of a ring, there is less.
+        Metal below the roots. Above an opening, or where the region itself is held, there is less.
     center : complex, mm
         A point behind the teeth, of a rack a far one.
 
@@ -520,20 +528,28 @@ def sector(region: Region, start: float, end: float, depth: float, center: compl
     Raises
     ------
     ValueError
-        If an opening leaves less than two fifths of the depth: the whole region is needed.
+        If an opening that is not held leaves less than two fifths of the depth: the whole region is
+        needed.
     """
     runs = _between(region.teeth, start, end)
     points = np.concatenate([run.points for run in runs]) - center
     turn = float(np.angle(points[1:] / points[:-1]).sum())
     outward = math.copysign(1.0, turn)  # teeth that run clockwise are those of a ring
     roots = float((outward * np.abs(points)).min())
-    height = roots - depth
     middle = points[0] * np.exp(0.5j * turn)
-    for curve in region.curves:
-        others = curve.at(curve.places)[0] - center
-        near = (curve is not region.teeth) & (np.abs(np.angle(others / middle)) < 0.5 * abs(turn))
-        height = float((outward * np.abs(others[near])).max(initial=height))
-    if roots - height < _THIN * depth:
+
+    def reach(held: bool, floor: float) -> float:
+        """Return the height of held or free curves below the teeth, at least `floor`."""
+        for curve in region.curves:
+            if curve is not region.teeth and curve.runs[0].held == held:
+                others = curve.at(curve.places)[0] - center
+                below = others[np.abs(np.angle(others / middle)) < _BESIDE * abs(turn)]
+                floor = float((outward * np.abs(below)).max(initial=floor))
+        return floor
+
+    lowest = reach(held=True, floor=roots - depth)
+    height = reach(held=False, floor=lowest)
+    if height > max(lowest, roots - _THIN * depth):
         raise ValueError("an opening is too near to the teeth for a sector")
     feet = outward * height * points[[-1, 0]] / np.abs(points[[-1, 0]]) + center
     last, first = complex(points[-1] + center), complex(points[0] + center)

@@ -117,12 +117,12 @@ def mesh_corners(curve: BoundaryCurve, largest: float) -> Array:
     largest : float, mm
         Largest size of triangles: bends that are very tight beside it are corners too.
     """
-    s, least = curve.places, _LEAST * largest
-    tight = np.abs(curve.curvature(s)) * least > _PER_CURVATURE
+    least, (ends, bends) = _LEAST * largest, curve.steps
+    tight = np.abs(bends) * least > _PER_CURVATURE
     edges = np.flatnonzero(np.diff(tight, prepend=False, append=False))
-    before, after = s[np.maximum(edges[::2] - 1, 0)], s[np.minimum(edges[1::2], len(s) - 1)]
-    turn = np.angle(curve.at(after)[1] * np.conj(curve.at(before)[1]))
-    sharp = 0.5 * (before + after)[np.abs(turn) > _SHARP]
+    turned = np.append(0.0, np.cumsum(bends * np.diff(ends)))
+    first, last = edges[::2], edges[1::2]
+    sharp = 0.5 * (ends[first] + ends[last])[np.abs(turned[last] - turned[first]) > _SHARP]
     corners = apart(np.sort(np.concatenate([curve.corners, curve.held_ends, sharp])), least)
     wrapped = len(corners) > 1 and corners[0] + curve.length - corners[-1] <= least
     return corners[:-1] if wrapped else corners
