@@ -211,9 +211,8 @@ class CurvedMesh(ShortRepr):
         from skfem import MeshTri2
 
         made = MeshTri2.from_mesh(self._straight)
-        places = made.doflocs.copy()
-        places[:, self.edges[:, 1]] = as_pairs(self.middles).T
-        return replace(made, doflocs=places)
+        made.doflocs[:, self.edges[:, 1]] = as_pairs(self.middles).T
+        return made
 
     @cached_property
     def nodes(self) -> Plane:
