@@ -173,13 +173,13 @@ def test_spur_wheels_are_in_the_band_of_iso(case: tuple[int, float, str]) -> Non
     assert 0.96 < over_iso(case, tolerance=0.004) < 0.985
 
 
-def solved(mesh: CurvedMesh, module: float, load: FlankLoad) -> np.ndarray:
+def solved(mesh: CurvedMesh, module: float, load: FlankLoad) -> Any:
     """Tension, compression and deflection on one mesh."""
     body = ElasticBody(mesh=mesh, moduli=STEEL)
     forces = nodal_forces(mesh, [load])
     moved = body.displacements(forces)
     edge = edge_stress(body, moved[:, 0], load.curve)
-    looked = looked_at(edge, module, load)
+    looked = looked_at(edge, module, [load])
     stresses = [peak(edge, looked, sign).stress for sign in (1, -1)]
     return np.array([*stresses, deflections(forces, moved)[0, 0]])
 
@@ -196,7 +196,7 @@ def enlarged(region: Region, factor: float) -> Region:
 def test_ten_times_the_size_and_force_is_the_same_stress() -> None:
     """On the same mesh, and ten times the deflection: there is no length of its own."""
     tooth = spur_tooth(20, 0.38, "outer")
-    mesh = first_mesh(tooth.region, tooth.module, tooth.load)
+    mesh = first_mesh(tooth.region, tooth.module, [tooth.load])
     large = replace(
         mesh,
         region=enlarged(tooth.region, 10.0),

@@ -128,10 +128,11 @@ def certified(
     load: FlankLoad,
     moduli: PlaneModuli,
     *,
+    others: Sequence[FlankLoad] = (),
     tolerance: float = TOLERANCE,
     most: int = MOST,
 ) -> Certificate:
-    """Return the largest stresses in the fillets of a wheel under a load.
+    """Return the largest stresses in the fillets of a wheel under a load, or several.
 
     The mesh is refined twice at least, then until the estimated error is within the tolerance or
     the next mesh would be too large: `Certificate.reached` says which.
@@ -146,6 +147,8 @@ def certified(
         The load.
     moduli : PlaneModuli
         Elasticity of the wheel.
+    others : sequence of FlankLoad
+        Loads on other teeth at the same time.
     tolerance : float
         Relative error.
     most : int
@@ -160,21 +163,23 @@ def certified(
     InfeasibleError
         If the contact is too wide for its tooth, or the wheel has no fillets.
     """
-    if load.half_width > _HALF_PLANE * module:
-        share = (_HALF_PLANE * module / load.half_width) ** 2
+    loads = (load, *others)
+    widest = max(one.half_width for one in loads)
+    if widest > _HALF_PLANE * module:
+        share = (_HALF_PLANE * module / widest) ** 2
         raise InfeasibleError(
             "the force is too large for the flank: the contact is wider than 0.6 modules",
             value=abs(load.force),
             limit=share * abs(load.force),
             unit="N/mm",
         )
-    mesh, solved, errors = first_mesh(region, module, load), list[_Solved](), np.full(3, np.inf)
+    mesh, solved, errors = first_mesh(region, module, loads), list[_Solved](), np.full(3, np.inf)
     while not solved or errors[:2].max() > tolerance:
         if solved:
-            mesh = _refined(solved[-1], module, load)
+            mesh = _refined(solved[-1], module, load.curve)
             if 2 * len(mesh.nodes) > most:
                 break
-        solved.append(_solved(ElasticBody(mesh=mesh, moduli=moduli), module, load))
+        solved.append(_solved(ElasticBody(mesh=mesh, moduli=moduli), module, loads))
         errors = _errors(solved)
     tension, compression = solved[-1].tension, solved[-1].compression
     corners = region.teeth.at(sharp_corners(region.teeth))[0]
@@ -193,8 +198,8 @@ def certified(
     )
 
 
-def first_mesh(region: Region, module: float, load: FlankLoad) -> CurvedMesh:
-    """Return a mesh that is small at a load and in the fillets on both sides of it.
+def first_mesh(region: Region, module: float, loads: Sequence[FlankLoad]) -> CurvedMesh:
+    """Return a mesh that is small at each load and in the fillets on both sides of it.
 
     Parameters
     ----------
@@ -202,8 +207,8 @@ def first_mesh(region: Region, module: float, load: FlankLoad) -> CurvedMesh:
         The wheel.
     module : float, mm
         Its module.
-    load : FlankLoad
-        The load.
+    loads : sequence of FlankLoad
+        The loads.
 
     Returns
     -------
@@ -219,20 +224,23 @@ def first_mesh(region: Region, module: float, load: FlankLoad) -> CurvedMesh:
         what = "no stress can be given: the roots of the teeth have no fillets"
         raise InfeasibleError(what, nearest="sharp corners have no limit of stress")
     ends = np.concatenate([found + turn * curve.length for turn in (-1.0, 0.0, 1.0)])
-    before = ends[ends[:, 1] < load.place, 0].max()
-    after = ends[ends[:, 0] > load.place, 1].min()
-    points, sizes = outline_sizes(region, module, np.array([[before, after]]))
-    at_load = curve.at(load.place + load.half_width * _ACROSS)[0]
-    size = np.full(len(at_load), max(load.half_width, _AT_LOAD * module))
-    sources = np.append(points, at_load), np.append(sizes, size)
-    return CurvedMesh.of(graded(region, *sources, LARGEST * module))
+    spans = [
+        [ends[ends[:, 1] < one.place, 0].max(), ends[ends[:, 0] > one.place, 1].min()]
+        for one in loads
+    ]
+    points, sizes = outline_sizes(region, module, np.array(spans))
+    at_loads = [curve.at(one.place + one.half_width * _ACROSS)[0] for one in loads]
+    least = [max(one.half_width, _AT_LOAD * module) for one in loads]
+    points = np.concatenate([points, *at_loads])
+    sizes = np.concatenate([sizes, np.repeat(least, len(_ACROSS))])
+    return CurvedMesh.of(graded(region, points, sizes, LARGEST * module))
 
 
-def _solved(body: ElasticBody, module: float, load: FlankLoad) -> _Solved:
-    forces = nodal_forces(body.mesh, [load])
-    moved = body.displacements(forces)
-    edge = edge_stress(body, moved[:, 0], load.curve)
-    looked = looked_at(edge, module, load)
+def _solved(body: ElasticBody, module: float, loads: Sequence[FlankLoad]) -> _Solved:
+    forces = nodal_forces(body.mesh, loads)
+    moved = body.displacements(forces.sum(axis=1, keepdims=True))
+    edge = edge_stress(body, moved[:, 0], loads[0].curve)
+    looked = looked_at(edge, module, loads)
     if not looked.any():
         what = "no stress can be given: all fillets are beside the load or sharp corners"
         raise InfeasibleError(what)
@@ -241,15 +249,15 @@ def _solved(body: ElasticBody, module: float, load: FlankLoad) -> _Solved:
         moved=moved,
         tension=peak(edge, looked, 1),
         compression=peak(edge, looked, -1),
-        deflection=float(deflections(forces, moved)[0, 0]),
+        deflection=float(deflections(forces[:, :1], moved)[0, 0]),
     )
 
 
-def _refined(solved: _Solved, module: float, load: FlankLoad) -> CurvedMesh:
+def _refined(solved: _Solved, module: float, curve: int) -> CurvedMesh:
     """Return the mesh with the triangles divided that matter most to the results."""
     body, within = solved.body, _AVERAGED * module
     peaks = solved.tension, solved.compression
-    works = [mean_stress(body, load.curve, one.s, within) for one in peaks]
+    works = [mean_stress(body, curve, one.s, within) for one in peaks]
     duals = body.displacements(np.stack(works, axis=1))
     errors = indicators(body, np.concatenate([solved.moved, duals], axis=1))
     products = errors[0] * errors

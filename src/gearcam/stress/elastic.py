@@ -223,9 +223,9 @@ class CurvedMesh(ShortRepr):
         """Return the shape functions at the points of the quadrature, or `at_nodes`."""
         from skfem import Basis, ElementTriP2
 
-        rule = {"quadrature": (_NODES, np.ones(6))} if at_nodes else {"intorder": _DEGREE}
+        rule: Any = {"quadrature": (_NODES, np.ones(6))} if at_nodes else {"intorder": _DEGREE}
         basis = Basis(self._curved, ElementTriP2(), **rule)
-        shapes = [shape[0] for shape in basis.basis]
+        shapes: list[Any] = [shape[0] for shape in basis.basis]
         slopes = np.stack([shape.grad for shape in shapes]).transpose(2, 0, 1, 3)
         return Shapes(
             nodes=basis.element_dofs.T.astype(np.int64),

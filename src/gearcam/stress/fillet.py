@@ -11,6 +11,7 @@ the stress of an elastic body has no limit, and none is given near it.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
@@ -205,8 +206,8 @@ def in_fillets(edge: EdgeStress, module: float) -> Mask:
     return made
 
 
-def looked_at(edge: EdgeStress, module: float, load: FlankLoad) -> Mask:
-    """Return where peaks are looked for: in fillets, and not beside the load.
+def looked_at(edge: EdgeStress, module: float, loads: Sequence[FlankLoad]) -> Mask:
+    """Return where peaks are looked for: in fillets, and not beside a load.
 
     Parameters
     ----------
@@ -214,16 +215,18 @@ def looked_at(edge: EdgeStress, module: float, load: FlankLoad) -> Mask:
         Places on the curve with the teeth.
     module : float, mm
         Module.
-    load : FlankLoad
-        The load, on the same curve.
+    loads : sequence of FlankLoad
+        The loads, on the same curve.
 
     Returns
     -------
     (g,) bool array
     """
-    beside = BESIDE[0] * load.half_width + BESIDE[1] * module
-    away = np.abs(past(edge.curve, edge.s, load.place))
-    return in_fillets(edge, module) & (away > beside)
+    looked = in_fillets(edge, module)
+    for load in loads:
+        beside = BESIDE[0] * load.half_width + BESIDE[1] * module
+        looked &= np.abs(past(edge.curve, edge.s, load.place)) > beside
+    return looked
 
 
 def peak(edge: EdgeStress, looked: Mask, sign: int) -> StressPeak:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -27,7 +28,7 @@ def ring() -> CurvedMesh:
     return CurvedMesh.of(graded(region, sources, np.full(3, 0.5), 2.0))
 
 
-def uniform(z: np.ndarray) -> np.ndarray:
+def uniform(z: Any) -> Any:
     return STATE.reshape(3, *np.ones(z.ndim, dtype=int)) * np.ones(z.shape)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -102,6 +104,6 @@ def test_a_deflection_is_weighted_with_the_pressure() -> None:
     mesh = CurvedMesh.of(graded(SQUARE, np.array([10.0 + 4.0j]), np.array([0.3]), 4.0))
     load = flank_load(SQUARE, 10.0 + 4.2j, -1.0, 30.0, half_width=0.37)
     forces = nodal_forces(mesh, [load])
-    along = np.stack([-0.01 * np.ones(len(mesh.nodes)), 0.02j * mesh.nodes], axis=1)
+    along: Any = np.stack([-0.01 * np.ones(len(mesh.nodes)), 0.02j * mesh.nodes], axis=1)
     # a push of 0.01, and a turn by 0.02, which moves the place by -0.02*y along x
     assert deflections(forces, along) == pytest.approx(np.array([[0.01, 0.02 * 4.2]]), rel=1e-9)

@@ -68,6 +68,7 @@ def demand_whole(made: TriangleMesh) -> None:
         here = made.curve == number
         np.testing.assert_allclose(curve.at(made.start[here])[0], start[here], atol=1e-12)
         np.testing.assert_allclose(curve.at(made.end[here])[0], end[here], atol=1e-9)
+        assert (made.start[here] < curve.length).all()
         assert (made.end > made.start).all()
         assert (made.end - made.start)[here].sum() == pytest.approx(curve.length, rel=1e-12)
 

@@ -232,7 +232,12 @@ class ElasticPair:
             for k in here
         ]
         made = certified(
-            region, module, flank_loads[0], self.moduli[wheel - 1], tolerance=self.spec.tolerance
+            region,
+            module,
+            flank_loads[0],
+            self.moduli[wheel - 1],
+            others=flank_loads[1:],
+            tolerance=self.spec.tolerance,
         )
         strength = self.result.design.material.yield_strength
         return CertifiedRoot(

@@ -221,9 +221,7 @@ def _stiffness(pair: ElasticPair, entries: Entries) -> dict[str, Any]:
     }
 
 
-def _facts(
-    pair: ElasticPair, entries: Entries, stressed: StressedPair, *, complete: bool
-) -> Tree:
+def _facts(pair: ElasticPair, entries: Entries, stressed: StressedPair, *, complete: bool) -> Tree:
     """Return the facts of the study."""
     on_rack = pair.result.pair.on_rack
     lag, unit = (entries.lag, "mm") if on_rack else (entries.lag / ARCSEC.factor, "arcsec")
