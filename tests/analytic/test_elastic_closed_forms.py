@@ -27,7 +27,7 @@ from helpers_elastic import (
 from witness.elasticity import disc_approach, hole_in_plate
 
 
-def right_peak(body: ElasticBody, moved: np.ndarray) -> StressPeak:
+def right_peak(body: ElasticBody, moved: Any) -> StressPeak:
     """The largest tension on the right half of a hole."""
     edge = edge_stress(body, moved, 1)
     return peak(edge, edge.curve.at(edge.s)[0].real > 0.0, 1)
@@ -86,7 +86,7 @@ def membrane(pull: float) -> float:
     mesh = CurvedMesh.of(graded(region, np.array([2.0 + 0j, -2.0]), np.full(2, 0.02), 0.4))
     body = floating(mesh, steel, -3.25, 3.25)
 
-    def outwards(z: np.ndarray) -> np.ndarray:
+    def outwards(z: Any) -> Any:
         return np.stack([pull + 0.0 * z.real, pull + 0.0 * z.real, 0.0 * z.real])
 
     moved = body.displacements(edge_forces(mesh, 0, outwards)[:, None])[:, 0]
@@ -144,7 +144,7 @@ def test_below_a_line_contact_the_stress_is_that_of_huber_and_fuchs() -> None:
     assert deep / a == pytest.approx(0.704, abs=0.1)
 
 
-def half_disc(a: float) -> tuple[ElasticBody, np.ndarray]:
+def half_disc(a: float) -> tuple[ElasticBody, Any]:
     """The lower half of a disc of radius 1, held at its diameter; nodes that may touch a flat."""
     outer = BoundaryCurve(runs=(arc_run(-1.0 + 0j, 1.0 + 0j, 1.0), arc_run(1.0 + 0j, -1.0 + 0j)))
     sources = -1j * np.exp(1.6j * a * np.linspace(-1.0, 1.0, 33))
@@ -156,7 +156,7 @@ def half_disc(a: float) -> tuple[ElasticBody, np.ndarray]:
     return ElasticBody(mesh=mesh, moduli=UNIT, held=held), edge
 
 
-def pressed(body: ElasticBody, edge: np.ndarray, sunk: float) -> np.ndarray:
+def pressed(body: ElasticBody, edge: Any, sunk: float) -> Any:
     """Forces on nodes that a rigid flat pushes up by `sunk` at the lowest: contact, no tension."""
     forces = np.zeros((len(body.mesh.nodes), len(edge)), dtype=complex)
     forces[edge, np.arange(len(edge))] = 1j
