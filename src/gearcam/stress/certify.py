@@ -164,13 +164,13 @@ def certified(
         If the contact is too wide for its tooth, or the wheel has no fillets.
     """
     loads = (load, *others)
-    widest = max(one.half_width for one in loads)
-    if widest > _HALF_PLANE * module:
-        share = (_HALF_PLANE * module / widest) ** 2
+    widest = max(loads, key=lambda one: one.half_width)
+    if widest.half_width > _HALF_PLANE * module:
+        share = (_HALF_PLANE * module / widest.half_width) ** 2
         raise InfeasibleError(
             "the force is too large for the flank: the contact is wider than 0.6 modules",
-            value=abs(load.force),
-            limit=share * abs(load.force),
+            value=abs(widest.force),
+            limit=share * abs(widest.force),
             unit="N/mm",
         )
     mesh, solved, errors = first_mesh(region, module, loads), list[_Solved](), np.full(3, np.inf)

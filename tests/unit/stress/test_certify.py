@@ -62,6 +62,26 @@ def test_a_force_too_large_for_its_flank_is_refused() -> None:
     assert told.value.limit == pytest.approx(abs(wide.force) * (0.3 / 0.36) ** 2)
 
 
+def test_the_widest_of_several_contacts_is_told() -> None:
+    tooth = nail_tooth()
+    wide = replace(tooth.load, half_width=0.36 * tooth.module, force=3.0 * tooth.load.force)
+    with pytest.raises(InfeasibleError, match="the force is too large") as told:
+        certified(tooth.region, tooth.module, tooth.load, STEEL, others=[wide])
+    assert told.value.value == pytest.approx(abs(wide.force))
+
+
+def test_two_loads_of_half_the_force_are_the_whole() -> None:
+    tooth = spur_tooth(20, 0.38, "outer")
+    whole = certified(tooth.region, tooth.module, tooth.load, STEEL)
+    half = replace(tooth.load, force=0.5 * tooth.load.force)
+    both = certified(tooth.region, tooth.module, half, STEEL, others=[half])
+    assert both.tension.stress == pytest.approx(whole.tension.stress, rel=1e-9)
+    assert both.compression.stress == pytest.approx(whole.compression.stress, rel=1e-9)
+    assert both.deflection == pytest.approx(whole.deflection, rel=1e-9)
+    alone = certified(tooth.region, tooth.module, half, STEEL)
+    assert alone.tension.stress == pytest.approx(0.5 * whole.tension.stress, rel=1e-9)
+
+
 def test_a_wheel_without_fillets_is_refused() -> None:
     square = Region(outer=polygon(0j, 10.0 + 0j, 10.0 + 10.0j, 10.0j))
     load = flank_load(square, 10.0 + 5.0j, -1.0, 1.0, half_width=0.1)

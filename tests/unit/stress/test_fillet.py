@@ -171,7 +171,7 @@ def test_nothing_is_looked_at_beside_the_load() -> None:
     s = np.linspace(0.0, curve.length, 20000)
     edge = EdgeStress(curve, s, s)
     whole = in_fillets(edge, tooth.module)
-    assert np.array_equal(looked_at(edge, tooth.module, tooth.load), whole)  # far from fillets
+    assert np.array_equal(looked_at(edge, tooth.module, [tooth.load]), whole)  # far from fillets
     middle = float(fillets(curve, tooth.module)[5].mean())
     point, tangent = curve.at(np.array([middle]))
     load = flank_load(
