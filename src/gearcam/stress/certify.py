@@ -12,7 +12,7 @@ sum (Doerfler, SIAM J. Numer. Anal. 33, 1996, 1106).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -68,7 +68,7 @@ _FLOOR: Final = 2e-4
 """Relative error below which no estimate goes."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Certificate(ShortRepr):
     """The largest stresses in the fillets under a load, with the error that they may have.
 
@@ -86,12 +86,16 @@ class Certificate(ShortRepr):
         Mean displacement at the load, in its direction, weighted with its pressure.
     deflection_error : float
         Estimated relative error of it.
-    load : FlankLoad
-        The load, where it was applied.
+    loads : tuple of FlankLoad
+        The loads, where they were applied, that of the deflection first.
     corners : (k,) tuple of complex, mm
         Sharp re-entrant corners of the curve with the teeth, near which no stress was looked for.
     unknowns, loops : int
         Unknowns of the last mesh, and the number of times that the first was refined.
+    body : ElasticBody
+        The wheel on the last mesh.
+    moved : (n, 1) complex array, mm
+        Displacements of its nodes.
     """
 
     tension: StressPeak
@@ -101,10 +105,12 @@ class Certificate(ShortRepr):
     tolerance: float
     deflection: float
     deflection_error: float
-    load: FlankLoad
+    loads: tuple[FlankLoad, ...]
     corners: tuple[complex, ...]
     unknowns: int
     loops: int
+    body: ElasticBody = field(repr=False)
+    moved: Plane = field(repr=False)
 
     @property
     def reached(self) -> bool:
@@ -191,10 +197,12 @@ def certified(
         tolerance=tolerance,
         deflection=solved[-1].deflection,
         deflection_error=float(errors[2]),
-        load=load,
+        loads=loads,
         corners=tuple(corners.tolist()),
         unknowns=2 * len(solved[-1].body.mesh.nodes),
         loops=len(solved) - 1,
+        body=solved[-1].body,
+        moved=solved[-1].moved,
     )
 
 

@@ -82,6 +82,14 @@ class PlaneModuli(ShortRepr):
         nu = self.poisson
         return math.sqrt(1.0 - nu + nu * nu) if self.plane == "strain" else 1.0
 
+    def von_mises(self, stress: Array) -> Array:
+        """Return the von Mises stress, MPa, of `stress`, (3, ...), MPa, with that across."""
+        xx, yy, xy = stress
+        across = self.poisson * (xx + yy) if self.plane == "strain" else np.zeros_like(xx)
+        squares = (xx - yy) ** 2 + (yy - across) ** 2 + (across - xx) ** 2
+        made: Array = np.sqrt(0.5 * squares + 3.0 * xy * xy)
+        return made
+
     def energy(self, stress: Array) -> Array:
         """Return twice the elastic energy per volume, MPa, of `stress`, (3, ...), MPa."""
         xx, yy, xy = stress

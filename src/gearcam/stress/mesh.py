@@ -53,7 +53,7 @@ _SMALL: Final = 0.35
 _COMPARED: Final = 8
 """New points among which the nearest ones are compared."""
 
-_INSERTIONS: Final = 6
+_INSERTIONS: Final = 3
 """Largest number of rounds in which circumcentres are added."""
 
 _SMOOTHINGS: Final = 12

@@ -107,7 +107,10 @@ def study_stress(result: GearPairResult, progress: Progress) -> StudyResult:
         group=_facts(pair, entries, stressed, complete=not interrupted),
         study_findings=run_checks(STRESS, stressed, result.design.limits),
         drawn=partial(_charts, pair, entries),
-        pages={"stiffness.csv": table_bytes(_stiffness(pair, entries))},
+        pages={
+            "stiffness.csv": table_bytes(_stiffness(pair, entries)),
+            **_pictures(pair, certified),
+        },
         interrupted=interrupted,
     )
 
@@ -203,6 +206,23 @@ def _columns(pair: ElasticPair, entries: Entries, stressed: StressedPair) -> dic
         for name, values in zip(ROOTS, entries.roots[wheel], strict=True):
             columns[f"{name}{wheel + 1}_mpa"] = values[step, column]
     return columns
+
+
+def _pictures(pair: ElasticPair, certified: list[CertifiedRoot]) -> dict[str, bytes]:
+    """Return pictures of the certified stresses by file name."""
+    from gearcam.stress.picture import stress_field
+
+    made = {}
+    for one in certified:
+        field = stress_field(one.certificate, pair.result.pair.module)
+        place = f"wheel {one.wheel}, tooth {one.tooth}, {angle_text(one.phi1)}"
+        under = f"{formatted(one.force, 6)} N on {formatted(pair.width, 4)} mm"
+        lines = (
+            f"{pair.result.design.name}: {place}",
+            f"{under}; bands: stress along the edge, red tension, blue compression",
+        )
+        made[f"stress_wheel{one.wheel}_tooth{one.tooth}.svg"] = field.svg(lines)
+    return made
 
 
 def _stiffness(pair: ElasticPair, entries: Entries) -> dict[str, Any]:
