@@ -15,7 +15,8 @@ from gearcam.numeric.arrays import Array, Plane
 from gearcam.parts.shapes import Circle, Loop
 from gearcam.stress import mesh
 from gearcam.stress.mesh import TriangleMesh, graded
-from gearcam.stress.region import Region, curve_of, region_of, sector, tooth_spans
+from gearcam.stress.region import Region, curve_of, region_of, tooth_spans
+from gearcam.stress.sector import sector
 from gearcam.stress.size_field import (
     CONCAVE,
     FILLET,

@@ -22,9 +22,9 @@ from gearcam.stress.region import (
     arc_run,
     curve_of,
     region_of,
-    sector,
     tooth_spans,
 )
+from gearcam.stress.sector import sector
 from helpers_contour import disc_contour
 from helpers_pairs import profile
 
