@@ -65,7 +65,7 @@ class TouchingTeeth(ShortRepr):
         return made
 
     def padded(self, values: NDArray[Any], count: int, fill: float = 0.0) -> NDArray[Any]:
-        """Return `values` of the contacts, (k, ...), as rows of `count` phases, filled up."""
+        """Return `values` of contacts, (k, ...), in rows of `count` phases, `fill` for none."""
         most = int(self.column.max(initial=0)) + 1
         made = np.full((count, most, *values.shape[1:]), fill, dtype=values.dtype)
         made[self.step, self.column] = values

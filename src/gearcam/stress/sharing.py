@@ -73,11 +73,19 @@ class ContactWidths(ShortRepr):
     spread: float
 
     def half_widths(self, force: Array, curvature: Array) -> Array:
-        """Return half-widths, mm, of forces per width, N/mm, at relative curvatures, 1/mm."""
+        """Return half-widths, mm, under a `force` per width, N/mm, at a `curvature`, 1/mm."""
         return np.sqrt(4.0 * force / (np.pi * curvature * self.contact_modulus))
 
     def closed(self, force: Array, curvature: Array) -> tuple[Array, Array]:
-        """Return what contacts close by beside the compliance, mm, and its slope, mm^2/N."""
+        """Return by what contacts close beside the compliance, mm, and its slope, mm^2/N.
+
+        Parameters
+        ----------
+        force : array, N/mm
+            Forces per width.
+        curvature : array, 1/mm
+            Relative curvatures.
+        """
         width = self.half_widths(force, curvature)
         shared = self.local * (0.5 + 2.0 * np.log(self.spread / width))
         return force * shared, shared - self.local

@@ -158,7 +158,18 @@ class ElasticPair:
         return np.where(np.isfinite(forces.force), known, np.nan)
 
     def entries(self, phi1: Array) -> Entries:
-        """Return the pair under load at driver angles, rad, those without contact left out."""
+        """Return the pair under load at driver angles, rad, those without contact left out.
+
+        Parameters
+        ----------
+        phi1 : (n,) array, rad
+            Driver angles.
+
+        Raises
+        ------
+        InfeasibleError
+            If no teeth carry at any of them.
+        """
         load = self.loads(phi1)
         most = np.nanmax(np.abs(load), initial=0.0)
         found = []

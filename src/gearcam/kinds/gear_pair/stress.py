@@ -210,7 +210,7 @@ def _columns(pair: ElasticPair, entries: Entries, stressed: StressedPair) -> dic
 
 def _pictures(pair: ElasticPair, certified: list[CertifiedRoot]) -> dict[str, bytes]:
     """Return pictures of the certified stresses by file name."""
-    from gearcam.stress.picture import stress_field
+    from gearcam.kinds.gear_pair.stress_picture import stress_field
 
     made = {}
     for one in certified:
