@@ -137,7 +137,8 @@ def touching_teeth(
     -------
     TouchingTeeth
     """
-    parts = [found] if about is None else [found, about]
+    edges = [] if about is None else [about]
+    parts = [found, *edges]
 
     def joined(name: str) -> NDArray[Any]:
         return np.concatenate([getattr(one, name) for one in parts], axis=-1)
@@ -146,8 +147,8 @@ def touching_teeth(
     order = np.lexsort((pair, step))
     step, pair = step[order], pair[order]
     point, force = joined("point")[order], joined("force")[order]
-    levers = [found.lever[1], *(one.lever for one in parts[1:])]
-    gaps = [np.zeros(len(found.step)), *(one.gap for one in parts[1:])]
+    levers = [found.lever[1], *(one.lever for one in edges)]
+    gaps = [np.zeros(len(found.step)), *(one.gap for one in edges)]
     # all touch at the lead of the phase, but for gaps that are small beside the wheels
     lead = np.zeros(len(phi1))
     lead[found.step] = found.lead

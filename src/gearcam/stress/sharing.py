@@ -153,5 +153,5 @@ def share(
         if same and np.abs(step[:, :most]).max(initial=0.0) <= _SMALL * scale.max(initial=0.0):
             break
     # the last unknown is the lag: its change under a unit of load is the compliance of the pair
-    stiffness = 1.0 / np.linalg.inv(system)[:, most, most]
-    return Sharing(force=force, lag=lag, stiffness=stiffness)
+    compliance = np.asarray(np.linalg.inv(system)[:, most, most], dtype=np.float64)
+    return Sharing(force=force, lag=lag, stiffness=1.0 / compliance)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ STIFF = ContactWidths(contact_modulus=1e5, local=0.0, spread=0.5)
 STEEL = ContactWidths(contact_modulus=113187.0, local=2.0 / (math.pi * 226374.0), spread=0.5)
 
 
-def springs(*, gap: float, coupled: float = 0.0) -> tuple[np.ndarray, ...]:
+def springs(*, gap: float, coupled: float = 0.0) -> tuple[Any, Any, Any, Any, Any]:
     compliance = np.array([[[2e-5, coupled], [coupled, 3e-5]]])
     lever, gaps = np.array([[40.0, 42.0]]), np.array([[0.0, gap]])
     return compliance, lever, gaps, np.full((1, 2), 0.1), np.array([4000.0])
@@ -57,19 +58,21 @@ def test_the_contacts_close_as_half_planes_do() -> None:
     """The equations hold with the logarithm, and the stiffness is the slope of the load."""
     compliance, lever, gap, curvature, _ = springs(gap=2e-4, coupled=1e-6)
     many = np.linspace(500.0, 8000.0, 7)
-    rows = [np.repeat(one, len(many), axis=0) for one in (compliance, lever, gap, curvature)]
-    made = share(*rows, many, STEEL)
+    compliance, lever, gap, curvature = (
+        np.repeat(one, len(many), axis=0) for one in (compliance, lever, gap, curvature)
+    )
+    made = share(compliance, lever, gap, curvature, many, STEEL)
     width = np.sqrt(4.0 * made.force / (np.pi * 0.1 * STEEL.contact_modulus))
     with np.errstate(divide="ignore", invalid="ignore"):
         local = made.force * STEEL.local * (0.5 + 2.0 * np.log(0.5 / width))
     local = np.nan_to_num(local)
-    closed = np.einsum("nij,nj->ni", rows[0], made.force) + local + rows[2]
+    closed = np.einsum("nij,nj->ni", compliance, made.force) + local + gap
     carries = made.force > 0.0
     assert carries[:, 0].all()
     assert carries[-1, 1]
-    assert np.abs(closed - made.lag[:, None] * rows[1])[carries].max() < 1e-12
-    assert (closed >= made.lag[:, None] * rows[1])[~carries].all()
-    assert (made.force * rows[1]).sum(axis=1) == pytest.approx(many, rel=1e-12)
-    more = share(*rows, many * (1.0 + 1e-5), STEEL)
+    assert np.abs(closed - made.lag[:, None] * lever)[carries].max() < 1e-12
+    assert (closed >= made.lag[:, None] * lever)[~carries].all()
+    assert (made.force * lever).sum(axis=1) == pytest.approx(many, rel=1e-12)
+    more = share(compliance, lever, gap, curvature, many * (1.0 + 1e-5), STEEL)
     slope = 1e-5 * many / (more.lag - made.lag)
     assert made.stiffness == pytest.approx(slope, rel=1e-3)

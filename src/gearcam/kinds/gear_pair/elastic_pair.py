@@ -118,7 +118,11 @@ class ElasticPair:
             region_of(part, one) for part, one in zip(result.parts, held, strict=True)
         )
         self.moduli: tuple[PlaneModuli, ...] = tuple(
-            PlaneModuli(young=young, poisson=poisson, plane=self.spec.plane)
+            PlaneModuli(
+                young=young,
+                poisson=poisson,
+                plane="stress" if self.spec.plane == "stress" else "strain",
+            )
             for young, poisson in result.design.material.elasticity
         )
         self._wheels: dict[int, tuple[Influence, Influence]] = {}

@@ -350,7 +350,7 @@ def _charts(pair: ElasticPair, entries: Entries) -> dict[str, Chart]:
     teeth = tuple(
         Line(
             label=f"{name}, {sort}",
-            x=entries.numbers[wheel],
+            x=entries.numbers[wheel].astype(float),
             y=np.abs(values).max(axis=0),
             dots=True,
         )
