@@ -15,6 +15,7 @@ import cases
 import design_cases
 import law_cases
 import linkage_cases
+import load_cases
 import needs
 import ring_cases
 import solid_cases
@@ -62,6 +63,7 @@ def main() -> int:
         spatial_cases.of_cylinder_cams,
         spatial_cases.of_globoidal_cams,
         linkage_cases.of_linkages,
+        load_cases.of_loads,
         sweep_cases.of_sweeps,
         design_cases.of_cams,
         before_cases.against_before,

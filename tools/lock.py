@@ -27,6 +27,7 @@ SECTIONS = {
     "plot": ["pyproject.toml", "--extra", "plot"],
     "sweep": ["pyproject.toml", "--extra", "sweep"],
     "optimize": ["pyproject.toml", "--extra", "optimize"],
+    "stress": ["pyproject.toml", "--extra", "stress"],
     "test": ["--group", "test"],
     "lint": ["--group", "lint"],
     "bench": ["--group", "bench"],
@@ -34,7 +35,7 @@ SECTIONS = {
     "lock": ["--group", "lock"],
 }
 TOOLS = ["--group", "install", "--group", "test"]
-_MORE = ["--extra", "sweep", "--extra", "optimize"]
+_MORE = ["--extra", "sweep", "--extra", "optimize", "--extra", "stress"]
 HEAD = """\
 # Written by `make lock`; installed by the Makefile, section by section.
 """

@@ -29,6 +29,7 @@ GROUPS: Final = {
     "meshing": "Meshing study (`gearcam mesh`)",
     "errors": "Errors of mounting and making (`gearcam errors`)",
     "forces of a pair": "Forces (`gearcam forces`)",
+    "stress of a pair": "Stress (`gearcam stress`)",
     "parts": "Parts",
     "cams": "Motion and profile",
     "cams in space": "Walls",

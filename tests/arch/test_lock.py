@@ -97,7 +97,7 @@ def test_what_builds_gearcam_is_locked() -> None:
 
 def test_the_lowest_versions_are_the_bounds() -> None:
     locked = {one.pin.name: one.version for one in SECTIONS["lowest"]}
-    extras = ("run", "step", "plot", "sweep", "optimize")
+    extras = ("run", "step", "plot", "sweep", "optimize", "stress")
     asked = [Requirement(line) for name in extras for line in WANTED[name]]
     for requirement in asked:
         (bound,) = [one.version for one in requirement.specifier if one.operator == ">="]
@@ -121,7 +121,16 @@ def test_each_package_has_one_version_on_every_machine() -> None:
 
 def test_each_target_takes_its_sections_and_no_other() -> None:
     assert taken("run") == ["run", "install"]
-    assert taken("test") == ["run", "install", "step", "plot", "sweep", "optimize", "test"]
+    assert taken("test") == [
+        "run",
+        "install",
+        "step",
+        "plot",
+        "sweep",
+        "optimize",
+        "stress",
+        "test",
+    ]
     assert taken("lint") == [*taken("test"), "lint"]
     assert taken("bench") == [*taken("test"), "bench"]
     assert taken("docs") == [*taken("test"), "docs"]

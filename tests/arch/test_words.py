@@ -33,6 +33,7 @@ ELSEWHERE = {
         "linkages",
         "mechanism",
         "markup.py",
+        "stress_field.py",
     ),
     "feeds?": ("simple.py", "tool.py", "milling.py", "milled.py", "gcode.py"),
     "idle": ("numerals.py", "paper.py"),

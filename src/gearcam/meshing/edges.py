@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.gears.contact import FlankPairs, touch
-from gearcam.gears.track import WHEELS
+from gearcam.gears.track import WHEELS, Wheel
 from gearcam.meshing.contact import Contacts
 from gearcam.meshing.placed_flanks import PlacedFlanks
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
@@ -60,6 +60,27 @@ class Facing(PlacedFlanks):
         guide = self.pairs.guide
         return guide.height(points), guide.rates(points, directions)[0]
 
+    def level(self, wheel: Wheel, height: Array, start: Array) -> Array:
+        """Return points of a wheel's flanks at heights: their driver angles, rad.
+
+        Parameters
+        ----------
+        wheel : {1, 2}
+            Driver or driven wheel.
+        height : (n,) array, mm
+            The heights.
+        start : (n,) array, rad
+            First guess.
+
+        Returns
+        -------
+        (n,) array
+            The nearer end where a flank does not reach the height.
+        """
+        # they rise from root to tip of the driven flank, and fall on the driver's
+        rising = self.ends[1] if wheel == 2 else self.ends[0, ::-1]
+        return self.find(wheel, self.heights, height, rising, start, _FOUND)
+
     def compare(self, angle: Array) -> tuple[Array, Array]:
         """Return the turn between flanks at points of the driver's.
 
@@ -75,7 +96,7 @@ class Facing(PlacedFlanks):
         """
         guide, (point, direction) = self.pairs.guide, self.at(1, angle, unit=True)
         height = guide.height(point)
-        mate = self.find(2, self.heights, height, self.ends[1], angle, _FOUND)
+        mate = self.level(2, height, angle)
         other, along = self.at(2, mate, unit=True)
         rise, turn = guide.rates(point, direction)
         mates, turned = guide.rates(other, along)
@@ -103,10 +124,22 @@ class Touches:
     edge: Mask
 
 
-def _facing(pairs: FlankPairs, phi1: Array) -> tuple[Facing, Array, Array]:
-    """Return the pairs that share a range of heights at phases, rad.
+def facing(pairs: FlankPairs, phi1: Array) -> tuple[Facing, Array]:
+    """Return the pairs that share a range of heights at phases, the driven wheel at its nominal.
 
-    With the driver angles, rad, of the ends of the range on the driver, root first.
+    Parameters
+    ----------
+    pairs : FlankPairs
+        The side.
+    phi1 : (n,) array, rad
+        Phases.
+
+    Returns
+    -------
+    found : Facing
+        k pairs, ordered by phase, then by pair.
+    heights : (2, 2, k) array, mm
+        Heights of root and tip of both flanks.
     """
     step, pair = pairs.beside(phi1)
     pose = pairs.guide.pose(pairs.guide.nominal(phi1)[step])
@@ -117,20 +150,17 @@ def _facing(pairs: FlankPairs, phi1: Array) -> tuple[Facing, Array, Array]:
         turn=np.stack([np.exp(-1j * phi1[step]), pose.rotation]),
         offset=np.stack([np.full_like(pose.shift, -pairs.distance), pose.shift]),
     )
-    # relative to the guide, heights fall from root to tip of the driver's flank
-    (highest, lowest), (root, tip) = (
-        [pairs.guide.height(every.at(wheel, end, unit=True)[0]) for end in ends]
-        for wheel, ends in zip(WHEELS, every.ends, strict=True)
+    heights = np.stack(
+        [
+            [pairs.guide.height(every.at(wheel, end, unit=True)[0]) for end in ends]
+            for wheel, ends in zip(WHEELS, every.ends, strict=True)
+        ]
     )
-    highest, lowest = np.minimum(highest, tip), np.maximum(lowest, root)
+    (highest, lowest), (root, tip) = heights
     apart = np.abs(every.sf[0] - pairs.track.arc_length(phi1)[step])
-    shared = (highest > lowest) & (apart < 2.0 * pairs.pitch)
-    found, height = every.select(shared), np.stack([highest, lowest])[:, shared]
-    low, high = (
-        found.find(1, found.heights, limit, found.ends[0, ::-1], own, _FOUND)
-        for limit, own in zip(height, found.ends[0], strict=True)
-    )
-    return found, low, high
+    shared = np.minimum(highest, tip) > np.maximum(lowest, root)
+    shared &= apart < 2.0 * pairs.pitch
+    return every.select(shared), heights[..., shared]
 
 
 def touches(pairs: FlankPairs, phi1: ArrayLike, *, exact: bool = True) -> Touches:
@@ -151,8 +181,17 @@ def touches(pairs: FlankPairs, phi1: ArrayLike, *, exact: bool = True) -> Touche
     Touches
         Ordered by phase, then by pair.
     """
-    facing, low, high = _facing(pairs, np.atleast_1d(np.asarray(phi1, dtype=float)))
-    many = facing.select(np.repeat(np.arange(len(low)), _SAMPLES))
+    faced, ((highest, lowest), (root, tip)) = facing(
+        pairs, np.atleast_1d(np.asarray(phi1, dtype=float))
+    )
+    # driver angles of the ends of the common heights, root of the driver first
+    low, high = (
+        faced.level(1, limit, own)
+        for limit, own in zip(
+            (np.minimum(highest, tip), np.maximum(lowest, root)), faced.ends[0], strict=True
+        )
+    )
+    many = faced.select(np.repeat(np.arange(len(low)), _SAMPLES))
     angle = np.linspace(low, high, _SAMPLES, axis=1)
     turn, slope = (values.reshape(angle.shape) for values in many.compare(angle.ravel()))
     # on the driving side the largest turn counts, on the other the smallest
@@ -164,7 +203,7 @@ def touches(pairs: FlankPairs, phi1: ArrayLike, *, exact: bool = True) -> Touche
     left = np.where(falling[rows, best] > 0.0, best, before)
     right = np.where(falling[rows, best] > 0.0, after, best)
     inner = np.flatnonzero((falling[rows, left] > 0.0) & (falling[rows, right] <= 0.0))
-    extreme, some = turn[rows, best], facing.select(inner)
+    extreme, some = turn[rows, best], faced.select(inner)
     if exact:
         at = bracketed_root(
             lambda x: some.compare(x)[1],
@@ -174,7 +213,7 @@ def touches(pairs: FlankPairs, phi1: ArrayLike, *, exact: bool = True) -> Touche
         )
         extreme[inner] = -pairs.side * some.compare(at)[0]
     return Touches(
-        step=facing.step, pair=facing.pair, turn=-pairs.side * extreme, edge=~np.isin(rows, inner)
+        step=faced.step, pair=faced.pair, turn=-pairs.side * extreme, edge=~np.isin(rows, inner)
     )
 
 

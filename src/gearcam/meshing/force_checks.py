@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, Protocol
 
 import numpy as np
 
@@ -15,10 +15,26 @@ from gearcam.laws.ratio.span import angle_text
 from gearcam.mechanics.hertz import FIRST_YIELD
 from gearcam.meshing.drive_checks import ranges_text
 from gearcam.meshing.forces import ToothForces
+from gearcam.meshing.settings import FORCES, STRESS
 from gearcam.numeric.arrays import Array, Mask
 
-KIND: Final = "forces of a pair"
-"""Registered checks of a study of forces."""
+
+class Pressed(Protocol):
+    """Contacts with their pressures."""
+
+    @property
+    def pressure(self) -> Array:
+        """Contact pressure of each, (k,), MPa."""
+        ...
+
+    @property
+    def yields(self) -> float | None:
+        """The lower yield stress, MPa."""
+        ...
+
+    def place_of(self, contact: int) -> str:
+        """Return the phase of a contact in words."""
+        ...
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -46,6 +62,10 @@ class LoadedPair(ShortRepr):
         """Return a phase in words."""
         return angle_text(float(self.forces.phi1[index]))
 
+    def place_of(self, contact: int) -> str:
+        """Return the phase of a contact in words."""
+        return self.at(int(self.forces.teeth.points.step[contact]))
+
     def stretches(self, mask: Mask) -> str:
         """Return in words where a mask holds."""
         rows = np.flatnonzero(mask)
@@ -54,7 +74,7 @@ class LoadedPair(ShortRepr):
         return ranges_text([(float(phi1[one[0]]), float(phi1[one[-1]])) for one in groups])
 
 
-@check("self-locking", kind=KIND, relation="at least", severity="error")
+@check("self-locking", kind=FORCES, relation="at least", severity="error")
 def self_locking(loaded: LoadedPair, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Report where friction locks the pair: no torque of the driver moves the load.
 
@@ -71,7 +91,7 @@ def self_locking(loaded: LoadedPair, limit: float) -> Iterator[Remark]:  # noqa:
         )
 
 
-@check("unstated-forces", kind=KIND)
+@check("unstated-forces", kind=FORCES)
 def unstated_forces(loaded: LoadedPair, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn of phases in which no flanks touch: their forces are not stated.
 
@@ -86,7 +106,7 @@ def unstated_forces(loaded: LoadedPair, limit: float) -> Iterator[Remark]:  # no
         )
 
 
-@check("load-reverses", kind=KIND, severity="note")
+@check("load-reverses", kind=FORCES, severity="note")
 def load_reverses(loaded: LoadedPair, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Note that the load changes its direction: teeth cross the backlash and hit the other flank.
 
@@ -108,8 +128,8 @@ _PRESSURE: Final = (
 )
 
 
-@check("contact-pressure", kind=KIND, limit=_PRESSURE, relation="at most", unit="MPa")
-def contact_pressure(loaded: LoadedPair, limit: float) -> Iterator[Remark]:
+@check("contact-pressure", kind=(FORCES, STRESS), limit=_PRESSURE, relation="at most", unit="MPa")
+def contact_pressure(loaded: Pressed, limit: float) -> Iterator[Remark]:
     """Warn of a contact pressure at which flanks wear or yield.
 
     Looks at: Hertz pressure of all contacts; without a limit against 1.79 times the lower yield
@@ -123,7 +143,7 @@ def contact_pressure(loaded: LoadedPair, limit: float) -> Iterator[Remark]:
     if found > most:
         yield Remark(
             "The contact pressure is too high: wider or larger wheels, or a smaller load lower it.",
-            loaded.at(int(loaded.forces.teeth.points.step[worst])),
+            loaded.place_of(worst),
             found,
             limit=most,
         )
@@ -136,7 +156,7 @@ _TORQUE: Final = (
 )
 
 
-@check("drive-torque", kind=KIND, limit=_TORQUE, relation="at most", unit="N m")
+@check("drive-torque", kind=FORCES, limit=_TORQUE, relation="at most", unit="N m")
 def drive_torque(loaded: LoadedPair, limit: float) -> Iterator[Remark]:
     """Warn if the pair needs more torque than its drive has.
 

@@ -19,6 +19,12 @@ KIND = "meshing"
 ERRORS = "errors"
 """Registered checks of a study of errors."""
 
+FORCES = "forces of a pair"
+"""Registered checks of a study of forces."""
+
+STRESS = "stress of a pair"
+"""Registered checks of a study of stress."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class MeshingSpec(ShortRepr):

@@ -36,6 +36,7 @@ WITHOUT_KEYS = {
     "other-profile": "at most",
     "remote-cutter": "at most",
     "self-locking": "at least",
+    "stress-error": "at most",
     "unknown-law": "at most",
     "wide-kerf": "at most",
     "contact-ratio": "at least",

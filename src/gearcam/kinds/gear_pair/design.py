@@ -7,7 +7,6 @@ from dataclasses import dataclass, field, fields
 from typing import Any, Final, TypeGuard
 
 from gearcam.base.brought import group_of
-from gearcam.base.display import ShortRepr
 from gearcam.base.quantities import COUNT, param
 from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.base.rules import Breach, Rule, Values, at_most, only_with
@@ -19,14 +18,14 @@ from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, pose_param
 from gearcam.designs.table import table_of
 from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.gears.subject import KIND as TEETH
+from gearcam.kinds.gear_pair.load_settings import PairForcesSpec, StressSpec
 from gearcam.kinds.shared import ACCURACY, AccuracySpec, GoalSpec
 from gearcam.laws.ratio import LAWS
 from gearcam.mechanics.drive import DriveSpec
 from gearcam.mechanics.friction import WheelFrictionSpec
 from gearcam.mechanics.load import WheelLoadSpec
 from gearcam.mechanics.material import MaterialSpec
-from gearcam.meshing.force_checks import KIND as FORCES
-from gearcam.meshing.settings import ERRORS, ErrorsSpec, MeshingSpec
+from gearcam.meshing.settings import ERRORS, FORCES, STRESS, ErrorsSpec, MeshingSpec
 from gearcam.meshing.settings import KIND as MESHING
 from gearcam.parts.blank import KIND as PARTS
 from gearcam.parts.blank import Blank, serving
@@ -67,6 +66,16 @@ STUDIES: Final = studies_of(
         compute=deferred(f"{_HERE}.forces:study_forces"),
         demand=deferred(f"{_HERE}.forces:demand"),
     ),
+    Study(
+        name="stress",
+        key="stress",
+        doc="Compute stress in tooth roots, shares and lag under load; write DIR/NAME/stress.csv.",
+        done="computed",
+        table="stress",
+        compute=deferred(f"{_HERE}.stress:study_stress"),
+        demand=deferred(f"{_HERE}.stress:demand"),
+        options={"teeth": "tooth"},
+    ),
     ACCURACY,
 )
 """The studies by name."""
@@ -105,27 +114,6 @@ class PairOutputSpec(OutputSpec):
     )
 
 
-@dataclass(frozen=True, kw_only=True)
-class PairForcesSpec(ShortRepr):
-    """Phases of the study of forces.
-
-    Examples
-    --------
-    >>> import gearcam as gc
-    >>> gc.PairForcesSpec(steps=360)
-    PairForcesSpec(steps=360)
-    """
-
-    steps: int = param(
-        COUNT,
-        default=720,
-        ge=12,
-        le=100000,
-        doc="number of even steps of the turn or travel; both sides of knots and of changes of "
-        "what carries, and places of extremes, are added",
-    )
-
-
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class GearPairDesign(Design):
     """The design of a pair of non-circular gears (see `Design`).
@@ -160,6 +148,8 @@ class GearPairDesign(Design):
         Elasticity and strength of both wheels.
     forces : PairForcesSpec
         Phases of the study of forces.
+    stress : StressSpec
+        Settings of the study of stress.
     goal : GoalSpec
         What `gearcam optimize` seeks.
     accuracy : AccuracySpec
@@ -189,6 +179,7 @@ class GearPairDesign(Design):
     friction: WheelFrictionSpec = field(default_factory=WheelFrictionSpec)
     material: MaterialSpec = field(default_factory=MaterialSpec)
     forces: PairForcesSpec = field(default_factory=PairForcesSpec)
+    stress: StressSpec = field(default_factory=StressSpec)
     accuracy: AccuracySpec = field(default_factory=AccuracySpec)
     goal: GoalSpec = field(default_factory=GoalSpec)
 
@@ -338,9 +329,10 @@ KIND: Final = Kind(
         "gearcam.meshing.checks",
         "gearcam.meshing.error_checks",
         "gearcam.meshing.force_checks",
+        "gearcam.stress.checks",
         "gearcam.parts.checks",
     ),
-    check_groups=(TEETH, "rows of tables", MESHING, ERRORS, FORCES, PARTS),
+    check_groups=(TEETH, "rows of tables", MESHING, ERRORS, FORCES, STRESS, PARTS),
     example={
         "law": {
             "type": "phases",

@@ -17,8 +17,9 @@ from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.kinds.gear_pair.drawn import DRIVER
 from gearcam.laws.ratio.span import angle_text
 from gearcam.mechanics.hertz import half_width, line_pressure
-from gearcam.meshing.force_checks import KIND, LoadedPair
+from gearcam.meshing.force_checks import LoadedPair
 from gearcam.meshing.forces import tooth_forces
+from gearcam.meshing.settings import FORCES
 from gearcam.numeric import narrowing
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Limit, Line, knot_marks
@@ -242,7 +243,7 @@ def study_forces(result: GearPairResult, progress: Progress) -> StudyResult:
     _ = under.sides  # timed separately
     with result.stage("forces"):
         loaded = under.loaded(under.places())
-        findings = run_checks(KIND, loaded, result.design.limits)
+        findings = run_checks(FORCES, loaded, result.design.limits)
     return StudyResult(
         result=result,
         study=result.kind.studies["forces"],
@@ -377,8 +378,8 @@ def _charts(under: PairUnderLoad, loaded: LoadedPair) -> dict[str, Chart]:
     driver = 1.0 / TORQUE.factor
     given = result.design.limits
     limits = {
-        "torque": limit_of(KIND, "drive-torque", given) / TORQUE.factor,
-        "pressure": limit_of(KIND, "contact-pressure", given),
+        "torque": limit_of(FORCES, "drive-torque", given) / TORQUE.factor,
+        "pressure": limit_of(FORCES, "contact-pressure", given),
     }
     knots = knot_marks(np.degrees(result.knots), 0.0, math.degrees(under.travel))
 

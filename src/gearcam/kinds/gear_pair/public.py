@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
-from gearcam.kinds.gear_pair.design import GearPairDesign, PairForcesSpec, PairOutputSpec
+from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
+from gearcam.kinds.gear_pair.load_settings import PairForcesSpec, StressSpec
 from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.kinds.shared import AccuracySpec, GoalSpec
 from gearcam.mechanics.drive import DriveSpec
@@ -16,7 +17,7 @@ from gearcam.parts.blank import Blank
 __all__ = [
     "AccuracySpec", "Blank", "DriveSpec", "ErrorsSpec", "GearPairDesign", "GearPairResult",
     "GoalSpec", "MaterialSpec", "MeshingSpec", "PairForcesSpec", "PairOutputSpec", "PairSpec",
-    "Rack", "RingSpec", "StepsSpec", "WheelFrictionSpec", "WheelLoadSpec",
+    "Rack", "RingSpec", "StepsSpec", "StressSpec", "WheelFrictionSpec", "WheelLoadSpec",
 ]  # fmt: skip
 
 PUBLIC = {name: globals()[name] for name in __all__}

@@ -1,0 +1,306 @@
+"""A pair with elastic wheels under its loads: every phase with the stress of all roots."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from gearcam.base.display import ShortRepr
+from gearcam.base.errors import InfeasibleError
+from gearcam.kinds.gear_pair.forces import PairUnderLoad
+from gearcam.meshing.contact import contacts
+
+if TYPE_CHECKING:
+    from gearcam.kinds.gear_pair.result import GearPairResult
+    from gearcam.numeric.arrays import Array, Ints
+    from gearcam.stress.checks import CertifiedRoot
+    from gearcam.stress.cycle import LoadedCycle
+    from gearcam.stress.elastic import PlaneModuli
+    from gearcam.stress.influence import Influence
+    from gearcam.stress.region import Region
+
+ROOTS: Final = ("tension", "compression")
+"""Rows of stresses in roots."""
+
+_NEAR: Final = 0.05
+"""Largest gap at which an edge may touch, in modules: no tooth bends so far."""
+
+_NO_LOAD: Final = 1e-9
+"""Share of the largest load below which a phase has none."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Entries(ShortRepr):
+    """A pair under load at e entries, which are phases, or each contact of a phase by itself.
+
+    Parameters
+    ----------
+    phi1, load : (e,) arrays, rad and N mm
+        Phase, and load on the driven element.
+    lag, stiffness : (e,) arrays, rad and N mm/rad
+        Lag of the driven element, and derivative of the load by it.
+    step : (k,) int array
+        Entry of each contact.
+    teeth : (2, k) int array
+        Tooth numbers.
+    force, half_width, curvature : (k,) arrays, N/mm, mm and 1/mm
+        Normal force per width, and the contact.
+    edge : (k,) bool array
+        Whether the end of a flank touches.
+    points, directions : (2, k) complex arrays, mm and 1
+        Point and normal force on each wheel, in its own frame.
+    roots : ((2, e, t), (2, e, t)) arrays, MPa
+        Tension and compression in the roots of each tooth of both wheels.
+    numbers : ((t,), (t,)) int arrays
+        Numbers of these teeth.
+    """
+
+    phi1: Array
+    load: Array
+    lag: Array
+    stiffness: Array
+    step: Ints
+    teeth: Ints
+    force: Array
+    half_width: Array
+    curvature: Array
+    edge: Any
+    points: Any
+    directions: Any
+    roots: tuple[Array, Array]
+    numbers: tuple[Ints, Ints]
+
+    @property
+    def worst(self) -> tuple[Array, Array]:
+        """The larger of tension and compression, (e, t), MPa, of both wheels."""
+        first, second = (np.maximum(one[0], -one[1]) for one in self.roots)
+        return first, second
+
+    @property
+    def pairs(self) -> Ints:
+        """Number of contacts that carry in each entry, (e,)."""
+        made: Ints = np.bincount(self.step[self.force > 0.0], minlength=len(self.phi1))
+        return made
+
+    @property
+    def share(self) -> Array:
+        """Share of each contact of the forces of its entry, (k,)."""
+        sums = np.bincount(self.step, self.force, len(self.phi1))
+        made: Array = self.force / sums[self.step]
+        return made
+
+
+class ElasticPair:
+    """A pair with elastic wheels.
+
+    Parameters
+    ----------
+    result : GearPairResult
+        The pair.
+
+    Raises
+    ------
+    DesignError, InfeasibleError
+        If a load does not fit, or the wheels cannot be held so.
+    """
+
+    def __init__(self, result: GearPairResult) -> None:
+        from gearcam.stress.elastic import PlaneModuli
+        from gearcam.stress.region import region_of
+
+        self.result, self.under = result, PairUnderLoad(result)
+        self.spec = result.design.stress
+        held = self.spec.held_diameter or (None, None)
+        self.regions: tuple[Region, ...] = tuple(
+            region_of(part, one) for part, one in zip(result.parts, held, strict=True)
+        )
+        self.moduli: tuple[PlaneModuli, ...] = tuple(
+            PlaneModuli(
+                young=young,
+                poisson=poisson,
+                plane="stress" if self.spec.plane == "stress" else "strain",
+            )
+            for young, poisson in result.design.material.elasticity
+        )
+        self._wheels: dict[int, tuple[Influence, Influence]] = {}
+
+    @property
+    def width(self) -> float:
+        """Face width, mm."""
+        return self.under.width
+
+    def wheels(self, side: int) -> tuple[Influence, Influence]:
+        """Return what forces on the flanks of a `side`, 0 or 1, do to both wheels."""
+        from gearcam.stress.influence import influence, loaded_flanks
+        from gearcam.stress.region import tooth_spans
+
+        if side not in self._wheels:
+            made = []
+            flanks = self.under.sides[0][side].wheels
+            for region, gear, one, moduli in zip(
+                self.regions, self.result.gears, flanks, self.moduli, strict=True
+            ):
+                numbers, spans = tooth_spans(region, gear)
+                ends = loaded_flanks(region, gear, one.sigma, numbers)
+                module = self.result.pair.module
+                made.append(influence(region, module, numbers, spans, ends, moduli))
+            self._wheels[side] = (made[0], made[1])
+        return self._wheels[side]
+
+    def loads(self, phi1: Array) -> Array:
+        """Return the moment of the normal forces about the driven shaft, (n,), N mm.
+
+        Without friction it is the load; with friction the normal forces are larger, or smaller.
+        """
+        forces = self.under.loaded(phi1).forces
+        points = forces.teeth.points
+        lever = np.where(forces.back, -1.0, 1.0)[points.step] * points.lever[1]
+        known = np.bincount(points.step, forces.of_teeth * lever, len(phi1))
+        return np.where(np.isfinite(forces.force), known, np.nan)
+
+    def entries(self, phi1: Array) -> Entries:
+        """Return the pair under load at driver angles, rad, those without contact left out.
+
+        Parameters
+        ----------
+        phi1 : (n,) array, rad
+            Driver angles.
+
+        Raises
+        ------
+        InfeasibleError
+            If no teeth carry at any of them.
+        """
+        load = self.loads(phi1)
+        most = np.nanmax(np.abs(load), initial=0.0)
+        found = []
+        for side, sign in ((1, 1.0), (0, -1.0)):
+            rows = np.flatnonzero(sign * load > _NO_LOAD * most)
+            if len(rows):
+                found.append(self._of_side(side, phi1[rows], sign * load[rows]))
+        if not found:
+            what = "no teeth carry at any phase: there is no stress"
+            raise InfeasibleError(what, where="load", nearest="a load above 0")
+        return _joined(found)
+
+    def _of_side(self, side: int, phi1: Array, load: Array) -> tuple[Array, Array, LoadedCycle]:
+        from gearcam.meshing.about_to_touch import about_to_touch
+        from gearcam.stress.cycle import loaded_cycle, touching_teeth
+        from gearcam.stress.sharing import ContactWidths
+
+        pairs, wheels = self.under.sides[0][side], self.wheels(side)
+        found = contacts(pairs, phi1)
+        near = _NEAR * self.result.pair.module
+        edges = self.spec.edges and not self.spec.alone
+        about = about_to_touch(pairs, phi1, found, near) if edges else None
+        touching = touching_teeth(pairs, phi1, found, about)
+        rows = touching.step if self.spec.alone else np.arange(len(phi1))
+        if self.spec.alone:
+            touching = replace(touching, step=np.arange(len(rows)))
+        widths = ContactWidths(
+            contact_modulus=self.result.design.material.contact_modulus,
+            local=sum(1.0 / (math.pi * one.along_edge) for one in self.moduli),
+            spread=wheels[0].spread,
+        )
+        per_width = load[rows] / self.width
+        return phi1[rows], load[rows], loaded_cycle(wheels, touching, per_width, widths)
+
+    def certified(self, entries: Entries, wheel: int, tooth: int, entry: int) -> CertifiedRoot:
+        """Return the certified stress of a wheel at an entry.
+
+        Parameters
+        ----------
+        entries : Entries
+            The pair under load.
+        wheel, tooth : int
+            The wheel, and the tooth that is looked at.
+        entry : int
+            Number of the entry.
+
+        Returns
+        -------
+        CertifiedRoot
+
+        Raises
+        ------
+        InfeasibleError
+            If the contact is too wide for the flank, or the wheel has no fillets.
+        """
+        from gearcam.stress.certify import certified
+        from gearcam.stress.checks import CertifiedRoot
+        from gearcam.stress.hertz_load import flank_load
+
+        region, module = self.regions[wheel - 1], self.result.pair.module
+        here = np.flatnonzero((entries.step == entry) & (entries.force > 0.0))
+        here = here[np.argsort(-entries.force[here])]
+        flank_loads = [
+            flank_load(
+                region,
+                complex(entries.points[wheel - 1, k]),
+                complex(entries.directions[wheel - 1, k]),
+                float(entries.force[k]),
+                half_width=float(entries.half_width[k]),
+            )
+            for k in here
+        ]
+        made = certified(
+            region,
+            module,
+            flank_loads[0],
+            self.moduli[wheel - 1],
+            others=flank_loads[1:],
+            tolerance=self.spec.tolerance,
+        )
+        strength = self.result.design.material.yield_strength
+        return CertifiedRoot(
+            wheel=wheel,
+            tooth=tooth,
+            phi1=float(entries.phi1[entry]),
+            force=float(entries.force[here].sum()) * self.width,
+            share=float(entries.share[here[0]]),
+            certificate=made,
+            yields=None if strength is None else strength[wheel - 1],
+        )
+
+
+def _joined(found: list[tuple[Array, Array, LoadedCycle]]) -> Entries:
+    """Return the entries of both sides, in order of their phases."""
+    phi1, load, cycles = zip(*found, strict=True)
+    angle = np.concatenate(phi1)
+    order = np.argsort(angle, kind="stable")
+    place = np.argsort(order)  # of each entry, among the ordered ones
+    starts = np.cumsum([0, *map(len, phi1)])
+    step = [
+        place[start + one.touching.step] for start, one in zip(starts[:-1], cycles, strict=True)
+    ]
+    at = np.argsort(np.concatenate(step), kind="stable")
+
+    def entries(values: list[Array]) -> Array:
+        return np.concatenate(values)[order]
+
+    def teeth(values: list[Any]) -> Any:
+        return np.concatenate(values, axis=-1)[..., at]
+
+    roots = [
+        np.stack([entries([getattr(one.roots[w], name) for one in cycles]) for name in ROOTS])
+        for w in (0, 1)
+    ]
+    return Entries(
+        phi1=angle[order],
+        load=entries(list(load)),
+        lag=entries([one.sharing.lag for one in cycles]),
+        stiffness=entries([one.sharing.stiffness for one in cycles]),
+        step=np.concatenate(step)[at],
+        teeth=teeth([one.touching.teeth for one in cycles]),
+        force=teeth([one.force for one in cycles]),
+        half_width=teeth([one.half_width for one in cycles]),
+        curvature=teeth([one.touching.curvature for one in cycles]),
+        edge=teeth([one.touching.edge for one in cycles]),
+        points=teeth([one.touching.points for one in cycles]),
+        directions=teeth([one.touching.directions for one in cycles]),
+        roots=(roots[0], roots[1]),
+        numbers=(cycles[0].roots[0].numbers, cycles[0].roots[1].numbers),
+    )

@@ -1,0 +1,386 @@
+"""The study of stress of a pair: roots of all teeth, load sharing, lag, stiffness."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from gearcam.base.errors import DesignError, MissingExtraError, Problem
+from gearcam.base.facts import Fact, Tree, extent
+from gearcam.base.findings import run_checks
+from gearcam.base.numerals import formatted
+from gearcam.base.quantities import ARCSEC
+from gearcam.export.table import table_bytes
+from gearcam.gears.track import WHEELS
+from gearcam.kinds.gear_pair import forces as loads
+from gearcam.kinds.gear_pair.drawn import DRIVER
+from gearcam.kinds.gear_pair.elastic_pair import ROOTS, ElasticPair, Entries
+from gearcam.laws.ratio.span import angle_text
+from gearcam.mechanics.hertz import line_pressure
+from gearcam.meshing.settings import STRESS
+from gearcam.pictures.charts import Chart, Line, knot_marks
+from gearcam.results.study import StudyResult
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from gearcam.kinds.gear_pair.result import GearPairResult
+    from gearcam.numeric.arrays import Array
+    from gearcam.results.study import Progress
+    from gearcam.stress.checks import CertifiedRoot, StressedPair
+    from gearcam.stress.region import Region
+
+_PER_TOOTH: Final = 10
+"""Phases for each tooth of the driver unless given."""
+
+
+def demand(design: Any) -> None:
+    """Refuse a design whose stress is not computed, and a missing extra.
+
+    Parameters
+    ----------
+    design : GearPairDesign
+        The design.
+
+    Raises
+    ------
+    DesignError
+        If nothing acts on the pair, or its wheels are stepped.
+    MissingExtraError
+        If scipy or scikit-fem are not installed.
+    """
+    loads.demand(design)
+    if design.steps.count > 1:
+        what, near = "stress of stepped wheels is not computed", "1"
+        raise DesignError([Problem(what, file=design.source, key="steps.count", allowed=near)])
+    if not (find_spec("scipy") and find_spec("skfem")):
+        raise MissingExtraError("stresses", "stress")
+
+
+def study_stress(result: GearPairResult, progress: Progress) -> StudyResult:
+    """Return the study of the stress of a pair (see `gearcam.stress`).
+
+    Parameters
+    ----------
+    result : GearPairResult
+        The pair.
+    progress : Progress
+        Called with what is computed, the number done and their total.
+
+    Returns
+    -------
+    StudyResult
+        Its rows are those of ``stress.csv``; without some certified stresses if it was interrupted.
+
+    Raises
+    ------
+    DesignError
+        If a load does not fit, or there is no such tooth.
+    InfeasibleError
+        If the wheels are impossible, or cannot be held so.
+    """
+    progress("elastic wheels", 0, 3)
+    pair = ElasticPair(result)
+    asked = _asked(pair)
+    certified: list[CertifiedRoot] = []
+    with result.stage("shares"):
+        entries = pair.entries(_phases(pair))
+    interrupted = ""
+    with result.stage("certificates"):
+        try:
+            chosen = asked(entries)
+            for number, (own, wheel, tooth, entry) in enumerate(chosen):
+                progress("certified roots", number, len(chosen))
+                certified.append(pair.certified(own, wheel, tooth, entry))
+        except KeyboardInterrupt:
+            interrupted = f"{len(certified)} certified stresses"
+    stressed = _stressed(pair, entries, tuple(certified))
+    return StudyResult(
+        result=result,
+        study=result.kind.studies["stress"],
+        file="stress.csv",
+        table=_columns(pair, entries, stressed),
+        group=_facts(pair, entries, stressed, complete=not interrupted),
+        study_findings=run_checks(STRESS, stressed, result.design.limits),
+        drawn=partial(_charts, pair, entries),
+        pages={
+            "stiffness.csv": table_bytes(_stiffness(pair, entries)),
+            **_pictures(pair, certified),
+        },
+        interrupted=interrupted,
+    )
+
+
+def _phases(pair: ElasticPair) -> Array:
+    """Return the driver angles that are studied, rad: in the middles of even parts of a turn."""
+    count = pair.spec.phases or _PER_TOOTH * pair.result.pair.teeth[0]
+    return pair.under.travel * (np.arange(count) + 0.5) / count
+
+
+Chosen = tuple[Entries, int, int, int]
+"""Entries, wheel, tooth and number of the entry whose stress is certified."""
+
+
+def _asked(pair: ElasticPair) -> Callable[[Entries], list[Chosen]]:
+    """Return the function that chooses what is certified among all entries; checked before."""
+    spec, design = pair.spec, pair.result.design
+    wheels = WHEELS if spec.wheel is None else (spec.wheel,)
+    if spec.teeth is not None and spec.wheel is None:
+        wheels = (1,)
+    for index, tooth in enumerate(spec.teeth or ()):
+        most = min(design.pair.teeth[wheel - 1] for wheel in wheels)
+        if tooth > most:
+            what = f"{tooth}: the wheel has no such tooth"
+            key = f"stress.teeth[{index}]"
+            raise DesignError([Problem(what, file=design.source, key=key, allowed=f"1 to {most}")])
+
+    def chosen(entries: Entries) -> list[Chosen]:
+        if spec.phi1 is not None:
+            entries = pair.entries(np.array([spec.phi1]))
+        found = []
+        for wheel in wheels:
+            worst, numbers = entries.worst[wheel - 1], entries.numbers[wheel - 1]
+            for tooth in spec.teeth or (None,):
+                columns = (
+                    np.arange(len(numbers)) if tooth is None else np.flatnonzero(numbers == tooth)
+                )
+                entry, column = np.unravel_index(
+                    int(worst[:, columns].argmax()), (len(worst), len(columns))
+                )
+                number = int(numbers[columns[column]])
+                found.append((entries, wheel, number, int(entry)))
+        return found
+
+    return chosen
+
+
+def _stressed(
+    pair: ElasticPair, entries: Entries, certified: tuple[CertifiedRoot, ...]
+) -> StressedPair:
+    """Return the input of the checks."""
+    from gearcam.stress.checks import StressedPair
+
+    material = pair.result.design.material
+    carries = entries.force > 0.0
+    pressure = line_pressure(entries.force, entries.curvature, material)
+    on_edge = np.zeros(len(entries.phi1), dtype=bool)
+    on_edge[entries.step[entries.edge & carries]] = True
+    bores = (pair.result.design.blank.wheel(number).bore_diameter for number in WHEELS)
+    unheld = not (pair.spec.held_diameter or all(bores))
+    circles = [formatted(one) for one in map(_held, pair.regions) if one is not None]
+    return StressedPair(
+        phi1=entries.phi1,
+        lag=entries.lag,
+        step=entries.step,
+        pressure=np.where(carries & ~entries.edge, pressure, np.nan),
+        on_edge=on_edge,
+        certified=certified,
+        yields=material.weakest,
+        held=f"circles of {' and '.join(circles)} mm" if unheld and circles else "",
+    )
+
+
+def _columns(pair: ElasticPair, entries: Entries, stressed: StressedPair) -> dict[str, Any]:
+    """Return the columns of ``stress.csv``: a row for each phase and pair of teeth that carries."""
+    rows = np.flatnonzero(entries.force > 0.0)
+    step = entries.step[rows]
+    columns: dict[str, Any] = {
+        "phi1_deg": np.degrees(entries.phi1)[step],
+        "tooth1": entries.teeth[0, rows],
+        "tooth2": entries.teeth[1, rows],
+        "pairs": entries.pairs[step],
+        "force_n": pair.width * entries.force[rows],
+        "share": entries.share[rows],
+        "half_width_mm": np.ma.masked_where(entries.edge[rows], entries.half_width[rows]),
+        "pressure_mpa": np.ma.masked_invalid(stressed.pressure[rows]),
+        "edge": entries.edge[rows].astype(int),
+    }
+    for wheel in (0, 1):
+        numbers = entries.numbers[wheel]
+        order = np.argsort(numbers)
+        column = order[np.searchsorted(numbers, entries.teeth[wheel, rows], sorter=order)]
+        for name, values in zip(ROOTS, entries.roots[wheel], strict=True):
+            columns[f"{name}{wheel + 1}_mpa"] = values[step, column]
+    return columns
+
+
+def _pictures(pair: ElasticPair, certified: list[CertifiedRoot]) -> dict[str, bytes]:
+    """Return pictures of the certified stresses by file name."""
+    from gearcam.kinds.gear_pair.stress_picture import stress_field
+
+    made = {}
+    for one in certified:
+        field = stress_field(one.certificate, pair.result.pair.module)
+        place = f"wheel {one.wheel}, tooth {one.tooth}, {angle_text(one.phi1)}"
+        under = f"{formatted(one.force, 6)} N on {formatted(pair.width, 4)} mm"
+        lines = (
+            f"{pair.result.design.name}: {place}",
+            f"{under}; bands: stress along the edge, red tension, blue compression",
+        )
+        made[f"stress_wheel{one.wheel}_tooth{one.tooth}.svg"] = field.svg(lines)
+    return made
+
+
+def _stiffness(pair: ElasticPair, entries: Entries) -> dict[str, Any]:
+    """Return the columns of ``stiffness.csv``: a row for each phase."""
+    on_rack = pair.result.pair.on_rack
+    nominal = pair.result.pair.rolling.guide.nominal(entries.phi1)
+    place = {"travel_mm": nominal} if on_rack else {"phi2_deg": np.degrees(nominal)}
+    per, unit = ("n_mm", "mm") if on_rack else ("nmm_rad", "rad")
+    return {
+        "phi1_deg": np.degrees(entries.phi1),
+        **place,
+        "pairs": entries.pairs,
+        f"lag_{unit}": entries.lag,
+        f"stiffness_{per}": pair.width * entries.stiffness,
+        f"secant_{per}": entries.load / entries.lag,
+    }
+
+
+def _facts(pair: ElasticPair, entries: Entries, stressed: StressedPair, *, complete: bool) -> Tree:
+    """Return the facts of the study."""
+    on_rack = pair.result.pair.on_rack
+    lag, unit = (entries.lag, "mm") if on_rack else (entries.lag / ARCSEC.factor, "arcsec")
+    per = "n_mm" if on_rack else "nmm_rad"
+    stiffness = pair.width * entries.stiffness
+    carrying = entries.pairs[entries.step] == 2
+    twice = entries.share[carrying & (entries.share >= 0.5)]
+    low, high = (formatted(float(one), 4) for one in (lag.min(), lag.max()))
+    held = [one for one in map(_held, pair.regions) if one is not None]
+    return {
+        "plane": pair.spec.plane,
+        "phases": len(_phases(pair)),
+        "held_diameter_mm": held or None,
+        "gears": [_of_wheel(entries, stressed, wheel) for wheel in WHEELS],
+        f"lag_{unit}": {
+            **extent(float(lag.min()), float(lag.max())),
+            "peak_to_peak": Fact(
+                float(np.ptp(lag)),
+                "lag of the driven wheel under load, peak to peak",
+                place=f"{low} to {high} {unit}",
+                unit=unit,
+                shown=True,
+            ),
+        },
+        f"stiffness_{per}": {
+            **extent(float(stiffness.min()), float(stiffness.max())),
+            "mean": Fact(float(stiffness.mean()), "mean stiffness of the mesh", unit=""),
+        },
+        "share": Fact(
+            extent(float(twice.min()), float(twice.max())),
+            "larger share of two pairs of teeth",
+            unit="",
+            shown=True,
+        )
+        if twice.size
+        else None,
+        "complete": complete,
+    }
+
+
+def _held(region: Region) -> float | None:
+    """Return the diameter of the circle on which a wheel is held, mm; None if it is no circle."""
+    for hole in region.holes:
+        points = hole.at(hole.places)[0]
+        if hole.held(hole.places).all() and np.ptp(np.abs(points)) < 1e-6 * np.abs(points[0]):
+            return 2.0 * float(np.abs(points[0]))
+    return None
+
+
+def _of_wheel(entries: Entries, stressed: StressedPair, wheel: int) -> Tree:
+    """Return the facts of a wheel: the most of the cycle, and what is certified."""
+    tension, compression = entries.roots[wheel - 1]
+    found = [one for one in stressed.certified if one.wheel == wheel]
+    first = max(found, key=lambda one: one.certificate.von_mises, default=None)
+    return {
+        "screen": {
+            "tension_mpa": float(tension.max()),
+            "compression_mpa": float(compression.min()),
+        },
+        "root": None if first is None else _of_root(first),
+        "roots": [_of_root(one) for one in found] if len(found) > 1 else None,
+    }
+
+
+def _of_root(one: CertifiedRoot) -> Tree:
+    """Return the facts of a certified stress."""
+    made = one.certificate
+    error = f"within {formatted(100.0 * made.error, 2)} %, {angle_text(one.phi1)}"
+    name = f"root of wheel {one.wheel}, tooth {one.tooth}"
+    return {
+        "tension_mpa": Fact(
+            made.tension.stress, f"tension at the {name}", place=error, unit="MPa", shown=True
+        ),
+        "compression_mpa": Fact(
+            made.compression.stress, f"compression at the {name}", unit="MPa", shown=True
+        ),
+        "von_mises_mpa": made.von_mises,
+        "error": made.error,
+        "tooth": one.tooth,
+        "tension_at_mm": [made.tension.point.real, made.tension.point.imag],
+        "compression_at_mm": [made.compression.point.real, made.compression.point.imag],
+        "phi1_deg": math.degrees(one.phi1),
+        "force_n": one.force,
+        "share": one.share,
+        "safety": one.safety,
+        "unknowns": made.unknowns,
+        "loops": made.loops,
+    }
+
+
+def _charts(pair: ElasticPair, entries: Entries) -> dict[str, Chart]:
+    """Return charts over the driver's angle, and of the roots of all teeth."""
+    result, phi1 = pair.result, np.degrees(entries.phi1)
+    end = math.degrees(pair.under.travel)
+    knots = knot_marks(np.degrees(result.knots), 0.0, end)
+    on_rack = result.pair.on_rack
+    lag = entries.lag if on_rack else entries.lag / ARCSEC.factor
+
+    def over(title: str, y: str, lines: dict[str, Array]) -> Chart:
+        made = tuple(Line(label=label, x=phi1, y=values) for label, values in lines.items())
+        return Chart(title=title, x=DRIVER, y=y, lines=made, marks=knots)
+
+    larger = np.zeros(len(phi1))
+    np.maximum.at(larger, entries.step, entries.share)
+    roots = dict(zip(("driver", "driven wheel"), entries.worst, strict=True))
+    teeth = tuple(
+        Line(
+            label=f"{name}, {sort}",
+            x=entries.numbers[wheel].astype(float),
+            y=np.abs(values).max(axis=0),
+            dots=True,
+        )
+        for wheel, name in enumerate(roots)
+        for sort, values in zip(ROOTS, entries.roots[wheel], strict=True)
+    )
+    rooted = Chart(
+        title="Largest stress in the root of each tooth over the turn",
+        x="tooth",
+        y="stress along the edge, MPa",
+        lines=teeth,
+    )
+    lagging = over(
+        "Lag of the driven wheel under load",
+        "lag, mm" if on_rack else "lag, arcsec",
+        {"lag": lag},
+    )
+    per = "N/mm" if on_rack else "N mm/rad"
+    return {
+        "roots": over(
+            "Largest stress in the roots of either wheel",
+            "stress along the edge, MPa",
+            {name: worst.max(axis=1) for name, worst in roots.items()},
+        ),
+        "roots_of_teeth": rooted,
+        "lag": lagging,
+        "stiffness": over(
+            "Stiffness of the mesh",
+            f"stiffness, {per}",
+            {"stiffness": pair.width * entries.stiffness},
+        ),
+        "shares": over("Larger share of the load", "share", {"largest of all pairs": larger}),
+    }

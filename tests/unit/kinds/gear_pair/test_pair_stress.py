@@ -1,0 +1,133 @@
+"""The study of stress of a pair: its files, facts, findings, and what it refuses."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gearcam
+from gearcam.base.errors import DesignError, InfeasibleError, MissingExtraError
+from gearcam.kinds.gear_pair import elastic_pair, stress
+from helpers_remedies import DOOR, ELLIPSE, pair
+
+LOAD = [{"torque_nm": 40}]
+
+
+def built(teeth: int = 12, load: Any = LOAD, law: Any = ELLIPSE, **tables: Any) -> Any:
+    rack = {"pressure_angle_deg": 25}
+    document = pair(law, [teeth, teeth], load=load, rack=rack, **tables)
+    return gearcam.build(gearcam.design(document))
+
+
+@cache
+def study() -> Any:
+    tables = {"blank": {"bore_diameter_mm": 8}, "material": {"yield_mpa": [400, 800]}}
+    return built(**tables).study("stress")
+
+
+def test_every_phase_has_its_forces_and_roots() -> None:
+    table, stiffness = study().columns, study().files["stiffness.csv"].decode().split("\n")
+    phases, row = np.unique(table["phi1_deg"], return_inverse=True)
+    assert len(phases) == 120 == len(stiffness) - 2
+    assert np.bincount(row, table["share"]) == pytest.approx(1.0)
+    assert (np.bincount(row) == table["pairs"][np.unique(row, return_index=True)[1]]).all()
+    assert (table["tension1_mpa"] > 0.0).all()
+    assert (table["compression2_mpa"] < 0.0).all()
+    assert np.isnan(table["pressure_mpa"][table["edge"] == 1.0]).all()
+    # the sum of the normal forces has the load's moment about the driven shaft
+    result = study().result
+    known = result.study("forces").columns
+    total = np.bincount(known["phase"].astype(int) - 1, known["normal_n"])
+    angle = np.zeros(len(total))
+    angle[known["phase"].astype(int) - 1] = known["phi1_deg"]
+    own = np.bincount(row, table["force_n"])
+    flanks = np.bincount(row, table["edge"]) == 0
+    assert own[flanks] == pytest.approx(np.interp(phases, angle, total)[flanks], rel=2e-3)
+
+
+def test_the_worst_root_of_each_wheel_is_certified() -> None:
+    facts = study().facts
+    for wheel in (0, 1):
+        key = f"stress.gears.{wheel}"
+        assert facts[f"{key}.root.error"] < 0.01
+        for sort in ("tension_mpa", "compression_mpa"):
+            screened, known = facts[f"{key}.screen.{sort}"], facts[f"{key}.root.{sort}"]
+            assert known == pytest.approx(screened, rel=0.06)
+    stress_1 = facts["stress.gears.0.root.von_mises_mpa"]
+    assert facts["stress.gears.0.root.safety"] == pytest.approx(400.0 / stress_1)
+    assert facts["stress.lag_arcsec.max"] > facts["stress.lag_arcsec.min"] > 0.0
+    assert study().complete
+
+
+def test_findings_say_what_fails() -> None:
+    found = {one.code: one for one in study().study_findings}
+    assert {"root-stress", "contact-pressure", "loaded-edge"} <= {*found}
+    root = found["root-stress"]
+    assert root.limit == 1.5
+    assert root.value is not None
+    assert (root.severity == "error") == (root.value < 1.0)
+
+
+def test_charts_show_roots_lag_and_shares() -> None:
+    charts = study().charts
+    assert {*charts} == {"roots", "roots_of_teeth", "lag", "stiffness", "shares"}
+    for chart in charts.values():
+        assert all(np.isfinite(line.y).all() for line in chart.lines)
+
+
+def test_teeth_and_a_phase_may_be_asked_for() -> None:
+    asked = {"wheel": 2, "teeth": [3, 7], "phases": 24}
+    facts = built(stress=asked).study("stress").facts
+    assert [facts[f"stress.gears.1.roots.{k}.tooth"] for k in (0, 1)] == [3, 7]
+    assert "stress.gears.0.root" not in facts
+    phase = built(stress={"phi1_deg": 100, "wheel": 1, "phases": 24}).study("stress").facts
+    assert phase["stress.gears.0.root.phi1_deg"] == pytest.approx(100.0)
+
+
+def test_an_interrupted_study_keeps_its_phases(monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: Any) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(elastic_pair.ElasticPair, "certified", interrupted)
+    made = built(stress={"phases": 24}).study("stress")
+    assert not made.complete
+    assert len(made.columns["phi1_deg"]) >= 24
+    assert "stress.gears.0.root" not in made.facts
+    assert made.facts["stress.gears.0.screen.tension_mpa"] > 0.0
+
+
+@pytest.mark.slow
+def test_open_pairs_and_loads_that_pull() -> None:
+    """Both flanks carry in turn; the wheel of an open pair is held on its bore."""
+    blank = {"bore_diameter_mm": 8, "timing_marks": False}
+    loads = [{"formula": "20*cos(3*phi1)"}]
+    made = built(20, loads, DOOR, blank=blank, stress={"phases": 30}).study("stress")
+    forces = made.columns["force_n"]
+    assert (forces > 0.0).all()
+    assert made.facts["stress.gears.1.root.error"] < 0.01
+
+
+REFUSED: dict[str, tuple[dict[str, Any], str]] = {
+    "no load": ({"load": []}, "nothing acts on the pair"),
+    "stepped": ({"steps": {"count": 2}}, "stress of stepped wheels is not computed"),
+    "no such tooth": ({"stress": {"teeth": [13]}}, "the wheel has no such tooth"),
+    "the held circle is in the roots": ({"stress": {"held_diameter_mm": 22}}, "held circle"),
+    "a force too large": ({"load": [{"torque_nm": 4000}]}, "too large"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_is_refused(name: str) -> None:
+    tables, words = REFUSED[name]
+    with pytest.raises((DesignError, InfeasibleError), match=re.escape(words)):
+        built(**{"load": LOAD, **tables}).study("stress")
+
+
+def test_a_missing_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(stress, "find_spec", lambda _: None)
+    with pytest.raises(MissingExtraError, match=re.escape("gearcam[stress]")):
+        built().study("stress")
