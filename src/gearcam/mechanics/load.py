@@ -22,13 +22,8 @@ if TYPE_CHECKING:
 OF_LIFT: Final = "s"
 """Variable of formulas over the lift, mm or rad."""
 
-_MOST: Final = 1e9
-
-_KILO: Final = 1e3
-"""N mm of a N m."""
-
-_FARTHEST: Final = 36000
-"""Largest driver angle of a pair that turns more than once, deg."""
+MOST: Final = 1e9
+"""Largest force or torque, N or N m."""
 
 
 class WrittenLoad:
@@ -139,6 +134,10 @@ class PlacedLoad(WrittenLoad):
             value = per * np.interp(x, np.asarray(self.place), np.asarray(self.table))
         else:
             value = np.full(x.shape, given)
+        return self._within(x, value)
+
+    def _within(self, x: Array, value: Array) -> Array:
+        """Return values, 0 where the load does not act."""
         if self.start is None or self.end is None:
             return value
         inside = (self.start <= x) & (x <= self.end)
@@ -174,10 +173,10 @@ class LoadSpec(ShortRepr, PlacedLoad):
 
     on: str = param(TEXT, default="follower", choices=("follower",), doc="member that is loaded")
     force: float | None = param(
-        FORCE, default=None, ge=-_MOST, le=_MOST, example=100, doc="constant force"
+        FORCE, default=None, ge=-MOST, le=MOST, example=100, doc="constant force"
     )
     torque: float | None = param(
-        TORQUE, default=None, ge=-_MOST, le=_MOST, example=2, doc="constant torque"
+        TORQUE, default=None, ge=-MOST, le=MOST, example=2, doc="constant torque"
     )
     formula: str | None = param(
         TEXT,
@@ -188,8 +187,8 @@ class LoadSpec(ShortRepr, PlacedLoad):
     )
     table: Row | None = param(
         default=None,
-        ge=-_MOST,
-        le=_MOST,
+        ge=-MOST,
+        le=MOST,
         min_length=2,
         example=[100, 250, 100],
         doc="forces, N, or torques, N m, at the places of `at`, with straight lines between",
@@ -278,94 +277,3 @@ class SlideLoadSpec(LoadSpec):
     end: float | None = param(
         LENGTH, default=None, ge=0, le=LONGEST, word="to", example=40, doc="where the load ends"
     )
-
-
-@dataclass(frozen=True, kw_only=True)
-class WheelLoadSpec(ShortRepr, PlacedLoad):
-    """A load on a pair: on the driven wheel or rack, or the torque with which the driver turns.
-
-    It is positive where it acts against the motion of the driven element, or drives the driver.
-    It may be constant, a formula in the driver's angle phi1 or the driven angle phi2, rad, or rows
-    that are joined by straight lines.
-
-    Examples
-    --------
-    >>> import gearcam as gc
-    >>> gc.WheelLoadSpec(torque=2000.0, start=1.0, end=2.0).at([0.5, 1.5], [0.0, 0.0])
-    array([   0., 2000.])
-    """
-
-    _variables: ClassVar[Mapping[str, str]] = {"phi1": "phi1", "phi2": "the driven angle phi2"}
-
-    on: str = param(
-        TEXT, default="wheel2", choices=("wheel1", "wheel2"), doc="what is loaded: driver or driven"
-    )
-    torque: float | None = param(
-        TORQUE, default=None, ge=-_MOST, le=_MOST, example=20, doc="constant torque"
-    )
-    force: float | None = param(
-        FORCE, default=None, ge=-_MOST, le=_MOST, example=500, doc="constant force on a rack"
-    )
-    formula: str | None = param(
-        TEXT,
-        default=None,
-        example="20 + 5*cos(phi1)",
-        doc="torque, N m, or force on a rack, N, as a formula in the driver's angle phi1, rad, or "
-        "in the driven angle phi2, rad",
-    )
-    table: Row | None = param(
-        default=None,
-        ge=-_MOST,
-        le=_MOST,
-        min_length=2,
-        example=[10, 25, 10],
-        doc="torques, N m, or forces on a rack, N, at the places of `at`, with straight lines "
-        "between",
-    )
-    place: Row | None = param(
-        ANGLE,
-        default=None,
-        ge=0,
-        le=_FARTHEST,
-        min_length=2,
-        word="at",
-        example=[0, 180, 360],
-        doc="driver angles of the table, from 0 over the turn, or the travel of an open pair",
-    )
-    start: float | None = param(
-        ANGLE,
-        default=None,
-        ge=0,
-        le=_FARTHEST,
-        word="from",
-        example=90,
-        doc="where the load begins",
-    )
-    end: float | None = param(
-        ANGLE, default=None, ge=0, le=_FARTHEST, word="to", example=180, doc="where the load ends"
-    )
-
-    rules = (
-        exactly_one("torque", "force", "formula", "table"),
-        needs("table", "place"),
-        needs("place", "table"),
-        needs("start", "end"),
-        needs("end", "start"),
-    )
-
-    def at(self, phi1: Any, phi2: Any, *, per: float = _KILO) -> Array:
-        """Return the load.
-
-        Parameters
-        ----------
-        phi1, phi2 : (n,) array, rad
-            Driver angles in the turn, or the travel, and driven angles.
-        per : float
-            Unit of formula and table in those inside: 1 of N, 1000 of N m.
-
-        Returns
-        -------
-        (n,) array, N mm or N
-        """
-        given = self.torque if self.force is None else self.force
-        return self._sizes(np.asarray(phi1, float), np.asarray(phi2, float), given, per)

@@ -23,8 +23,8 @@ from gearcam.kinds.shared import ACCURACY, AccuracySpec, GoalSpec
 from gearcam.laws.ratio import LAWS
 from gearcam.mechanics.drive import DriveSpec
 from gearcam.mechanics.friction import WheelFrictionSpec
-from gearcam.mechanics.load import WheelLoadSpec
 from gearcam.mechanics.material import MaterialSpec
+from gearcam.mechanics.wheel_load import WheelLoadSpec
 from gearcam.meshing.settings import ERRORS, FORCES, STRESS, ErrorsSpec, MeshingSpec
 from gearcam.meshing.settings import KIND as MESHING
 from gearcam.parts.blank import KIND as PARTS
@@ -246,9 +246,12 @@ def _load_faults(
         if slides and one.torque is not None:
             message, value = "acts on a rack, which does not turn", document["load"][number]
             yield Fault((*key, "torque_nm"), message, value["torque_nm"], "force_n")
-        if not slides and one.force is not None:
-            message, value = "acts on a wheel, which turns", document["load"][number]
-            yield Fault((*key, "force_n"), message, value["force_n"], "torque_nm")
+        if not slides and one.slides:
+            message, name = "acts on a wheel, which turns", "file" if one.file else "force_n"
+            yield Fault((*key, name), message, document["load"][number][name], "torque_nm")
+        if slides and one.file and not one.slides:
+            message = f"has {one.column}, but a rack does not turn"
+            yield Fault((*key, "file"), message, one.file, "a column force_n")
         if on_rack and one.formula is not None and one.read(one.formula)[0] == "phi2":
             message = "a rack has no angle phi2"
             yield Fault((*key, "formula"), message, one.formula, "a formula of phi1")

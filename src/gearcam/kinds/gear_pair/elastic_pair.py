@@ -12,10 +12,12 @@ from gearcam.base.display import ShortRepr
 from gearcam.base.errors import InfeasibleError
 from gearcam.kinds.gear_pair.forces import PairUnderLoad
 from gearcam.meshing.contact import contacts
+from gearcam.results.study import silent
 
 if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.result import GearPairResult
     from gearcam.numeric.arrays import Array, Ints
+    from gearcam.results.study import Progress
     from gearcam.stress.checks import CertifiedRoot
     from gearcam.stress.cycle import LoadedCycle
     from gearcam.stress.elastic import PlaneModuli
@@ -27,6 +29,15 @@ ROOTS: Final = ("tension", "compression")
 
 _NEAR: Final = 0.05
 """Largest gap at which an edge may touch, in modules: no tooth bends so far."""
+
+_LARGE: Final = 120
+"""Number of teeth above which a stress is certified on a sector: the rest does not matter to it."""
+
+_BESIDE: Final = 2
+"""Teeth of the sector on both sides of those that are loaded."""
+
+_DEPTH: Final = 5.0
+"""Metal of the sector below the roots, in modules."""
 
 _NO_LOAD: Final = 1e-9
 """Share of the largest load below which a phase has none."""
@@ -100,6 +111,8 @@ class ElasticPair:
     ----------
     result : GearPairResult
         The pair.
+    progress : Progress
+        Told of the wheels done.
 
     Raises
     ------
@@ -107,11 +120,11 @@ class ElasticPair:
         If a load does not fit, or the wheels cannot be held so.
     """
 
-    def __init__(self, result: GearPairResult) -> None:
+    def __init__(self, result: GearPairResult, progress: Progress = silent) -> None:
         from gearcam.stress.elastic import PlaneModuli
         from gearcam.stress.region import region_of
 
-        self.result, self.under = result, PairUnderLoad(result)
+        self.result, self.under, self._progress = result, PairUnderLoad(result), progress
         self.spec = result.design.stress
         held = self.spec.held_diameter or (None, None)
         self.regions: tuple[Region, ...] = tuple(
@@ -143,6 +156,7 @@ class ElasticPair:
             for region, gear, one, moduli in zip(
                 self.regions, self.result.gears, flanks, self.moduli, strict=True
             ):
+                self._progress("elastic wheels", len(made), len(self.regions))
                 numbers, spans = tooth_spans(region, gear)
                 ends = loaded_flanks(region, gear, one.sigma, numbers)
                 module = self.result.pair.module
@@ -208,6 +222,25 @@ class ElasticPair:
         per_width = load[rows] / self.width
         return phi1[rows], load[rows], loaded_cycle(wheels, touching, per_width, widths)
 
+    def _around(self, wheel: int, teeth: Ints) -> Region:
+        """Return the region of a wheel; of a large one the sector around some of its teeth."""
+        from gearcam.stress.region import tooth_spans
+        from gearcam.stress.sector import sector
+
+        region, gear = self.regions[wheel - 1], self.result.gears[wheel - 1]
+        if gear.toothing.teeth <= _LARGE or not gear.toothing.closed:
+            return region
+        numbers, spans = tooth_spans(region, gear)
+        rows = np.flatnonzero(np.isin(numbers, teeth))
+        half = len(numbers) // 2
+        away = (rows - rows[0] + half) % len(numbers) - half
+        low, high = rows[0] + away.min() - _BESIDE, rows[0] + away.max() + _BESIDE
+        ends = spans[low % len(numbers), 0], spans[high % len(numbers), 1]
+        try:
+            return sector(region, *ends, _DEPTH * self.result.pair.module)
+        except ValueError:  # an opening is near
+            return region
+
     def certified(self, entries: Entries, wheel: int, tooth: int, entry: int) -> CertifiedRoot:
         """Return the certified stress of a wheel at an entry.
 
@@ -231,18 +264,20 @@ class ElasticPair:
         """
         from gearcam.stress.certify import certified
         from gearcam.stress.checks import CertifiedRoot
-        from gearcam.stress.hertz_load import flank_load
+        from gearcam.stress.hertz_load import hertz_load
 
-        region, module = self.regions[wheel - 1], self.result.pair.module
+        module, material = self.result.pair.module, self.result.design.material
         here = np.flatnonzero((entries.step == entry) & (entries.force > 0.0))
         here = here[np.argsort(-entries.force[here])]
+        region = self._around(wheel, entries.teeth[wheel - 1, here])
         flank_loads = [
-            flank_load(
+            hertz_load(
                 region,
                 complex(entries.points[wheel - 1, k]),
                 complex(entries.directions[wheel - 1, k]),
                 float(entries.force[k]),
-                half_width=float(entries.half_width[k]),
+                curvature=float(entries.curvature[k]),
+                material=material,
             )
             for k in here
         ]
@@ -254,7 +289,7 @@ class ElasticPair:
             others=flank_loads[1:],
             tolerance=self.spec.tolerance,
         )
-        strength = self.result.design.material.yield_strength
+        strength = material.yield_strength
         return CertifiedRoot(
             wheel=wheel,
             tooth=tooth,

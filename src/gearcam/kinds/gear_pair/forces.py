@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from gearcam.gears.contact import FlankPairs
     from gearcam.kinds.gear_pair.result import GearPairResult
-    from gearcam.mechanics.load import WheelLoadSpec
+    from gearcam.mechanics.wheel_load import WheelLoadSpec
     from gearcam.numeric.arrays import Array, Ints
     from gearcam.results.study import Progress
 
@@ -197,7 +197,7 @@ def _demand_fit(
     load: WheelLoadSpec, number: int, travel: float, result: GearPairResult, *, whole: bool
 ) -> None:
     """Refuse a load whose places lie beyond the turn or travel, or whose table ends before it."""
-    places = {"at": (load.place or ())[-1:], "from": _one(load.start), "to": _one(load.end)}
+    places = {"at": load.ends[-1:], "from": _one(load.start), "to": _one(load.end)}
     words = "the turn" if whole else "the travel"
     for word, values in places.items():
         short = word == "at" and values and values[-1] < travel * (1.0 - _ROUNDING)
@@ -208,7 +208,8 @@ def _demand_fit(
         )
         end = f"{formatted(math.degrees(travel))} deg"
         allowed = f"{end} or more as the last" if short and not whole else f"up to {end}"
-        key = f"load[{number}].{word}_deg"
+        named = "file" if word == "at" and load.file is not None else f"{word}_deg"
+        key = f"load[{number}].{named}"
         raise DesignError([Problem(what, file=result.design.source, key=key, allowed=allowed)])
 
 

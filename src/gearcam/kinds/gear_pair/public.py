@@ -9,8 +9,8 @@ from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.kinds.shared import AccuracySpec, GoalSpec
 from gearcam.mechanics.drive import DriveSpec
 from gearcam.mechanics.friction import WheelFrictionSpec
-from gearcam.mechanics.load import WheelLoadSpec
 from gearcam.mechanics.material import MaterialSpec
+from gearcam.mechanics.wheel_load import WheelLoadSpec
 from gearcam.meshing.settings import ErrorsSpec, MeshingSpec
 from gearcam.parts.blank import Blank
 

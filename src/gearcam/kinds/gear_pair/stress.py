@@ -83,8 +83,7 @@ def study_stress(result: GearPairResult, progress: Progress) -> StudyResult:
     InfeasibleError
         If the wheels are impossible, or cannot be held so.
     """
-    progress("elastic wheels", 0, 3)
-    pair = ElasticPair(result)
+    pair = ElasticPair(result, progress)
     asked = _asked(pair)
     certified: list[CertifiedRoot] = []
     with result.stage("shares"):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,8 @@ import pytest
 
 import gearcam
 from gearcam.base.errors import DesignError
+from helpers_built import built
+from helpers_pairs import PROFILES
 from helpers_remedies import CIRCLE, DOOR, ELLIPSE, RING, pair
 
 LOAD = [{"torque_nm": 20}]
@@ -125,6 +128,52 @@ def test_extremes_are_those_between_the_steps_too() -> None:
         for end in ("min", "max"):
             key = f"forces.{name}.{end}"
             assert few.facts[key] == pytest.approx(many.facts[key], rel=1e-6), key
+
+
+def rows_of(folder: Path, head: str, *rows: str) -> str:
+    """The name of a CSV file with these rows."""
+    file = folder / "load.csv"
+    file.write_text("\n".join([head, *rows, ""]), encoding="utf-8")
+    return str(file)
+
+
+def test_rows_of_a_file_are_joined_by_straight_lines(tmp_path: Path) -> None:
+    """Where an angle stands twice the load jumps, and both sides have a phase."""
+    head = "phi1_deg,torque_nm,wheel2_torque_nm"
+    file = rows_of(tmp_path, head, "0,1,10", "90,1,10", "90,1,30", "360,1,10")
+    table = study(ELLIPSE, [24, 24], load=[{"file": file}]).columns
+    phi1 = table["phi1_deg"]
+    line = np.where(phi1 < 90.0, 10.0, 30.0 - 20.0 * (phi1 - 90.0) / 270.0)
+    away = np.abs(phi1 - 90.0) > 1e-9
+    assert table["load_nm"][away] == pytest.approx(line[away])
+    assert {10.0, 30.0} == {*table["load_nm"][~away].round(9)}
+    driver = study(ELLIPSE, [24, 24], load=[{"on": "wheel1", "file": file}]).columns
+    assert (driver["torque_nm"] == 1.0).all()
+
+
+@pytest.mark.parametrize("case", [
+    (("phi1_deg,force_n", "0,1", "360,1"), "acts on a wheel"),
+    (("phi1_deg,power_w", "0,1", "360,1"), "torque_nm"),
+    (("phi1_deg,torque_nm", "0,1", "90,1", "80,1"), "line 4: phi1_deg falls"),
+    (("phi1_deg,torque_nm", "0,1", "300,1"), "ends inside the turn"),
+    (("phi1_deg,torque_nm", "10,1", "360,1"), "begin inside the turn"),
+])  # fmt: skip
+def test_files_that_are_refused(case: tuple[tuple[str, ...], str], tmp_path: Path) -> None:
+    rows, words = case
+    with pytest.raises(DesignError, match=words):
+        study(ELLIPSE, [24, 24], load=[{"file": rows_of(tmp_path, *rows)}])
+
+
+def test_a_mechanism_hands_over_its_torque(tmp_path: Path) -> None:
+    """Without friction the pair's driver needs what the machine's does."""
+    machine = built(PROFILES / "nail_machine_slide.toml").study("torque")
+    (tmp_path / "torque.csv").write_bytes(machine.files["torque.csv"])
+    text = (PROFILES / "nail_machine_two_phase.toml").read_text("utf-8")
+    file = tmp_path / "pair.toml"
+    file.write_text(text + '\n[[load]]\nfile = "torque.csv"\n', encoding="utf-8")
+    made = gearcam.build(gearcam.load(file)).study("forces")
+    own = machine.facts["torque.torque_nm.max"]
+    assert made.facts["forces.torque_nm.max"] == pytest.approx(own, rel=1e-6)
 
 
 REFUSED: dict[str, tuple[Any, Any, str]] = {

@@ -111,6 +111,19 @@ def test_open_pairs_and_loads_that_pull() -> None:
     assert made.facts["stress.gears.1.root.error"] < 0.01
 
 
+@pytest.mark.slow
+def test_large_wheels_are_certified_on_a_sector(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The rest of the wheel does not matter to the roots."""
+    asked = {"phases": 24, "wheel": 1}
+    whole = built(24, stress=asked).study("stress").facts
+    monkeypatch.setattr(elastic_pair, "_LARGE", 10)
+    part = built(24, stress=asked).study("stress").facts
+    key = "stress.gears.0.root"
+    assert part[f"{key}.unknowns"] < whole[f"{key}.unknowns"]
+    for sort in ("tension_mpa", "compression_mpa"):
+        assert part[f"{key}.{sort}"] == pytest.approx(whole[f"{key}.{sort}"], rel=0.01)
+
+
 REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     "no load": ({"load": []}, "nothing acts on the pair"),
     "stepped": ({"steps": {"count": 2}}, "stress of stepped wheels is not computed"),
