@@ -7,6 +7,7 @@ document; the live view sends others to it.
 
 from __future__ import annotations
 
+import base64
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 PAGE: Final = "report.html"
 """File name."""
 
-BLOCKS: Final = ("verdict", "remedies", "findings", "files", "facts", "accuracy")
+BLOCKS: Final = ("verdict", "remedies", "findings", "pictures", "files", "facts", "accuracy")
 """Sections of the page that are written from facts, each by a template."""
 
 DRAFTED: Final = ("verdict", "remedies", "findings", "facts")
@@ -236,6 +237,7 @@ def blocks(
         "remedies": remedies(result) if seek else Remedies(),
         "files": {name: size_of(size) for name, size in result.sizes.items()},
         "errors": [*_errors(result, facts)],
+        "pictures": [*_pictures(result)] if "pictures" in names else (),
     }
     return {name: rendered(f"{name}.html", values) for name in names}
 
@@ -258,6 +260,14 @@ def _errors(result: Result, facts: Facts) -> Iterator[tuple[str, str]]:
         rows = (facts.quantity(f"accuracy.{name}") for name in names)
         largest = max(rows, key=lambda one: one.value)
         yield label, f"{formatted(largest.value, 2)} {largest.unit}".rstrip()
+
+
+def _pictures(result: Result) -> Iterator[tuple[str, str]]:
+    """Yield name and content of the pictures of studies, for the source of an image."""
+    for study in result.studies.values():
+        for name, content in study.pages.items():
+            if name.endswith(".svg"):
+                yield name, base64.b64encode(content).decode()
 
 
 @cache

@@ -380,13 +380,15 @@ class Result(Staged):
         scene = self.kind.scene(self, PLACES if places is None else places)
         if scene is None:
             return None
-        more = [one.overlay(scene) for one in self.studies.values()]
+        studies = self.studies.values()
+        more = [one.overlay(scene) for one in studies]
+        curves = [curve for one in studies for curve in one.coloured()]
         contacts = {
             name: points
             for contacts in (scene.contacts, *more)
             for name, points in contacts.items()
         }
-        return replace(scene, contacts=contacts)
+        return replace(scene, contacts=contacts, coloured=(*scene.coloured, *curves))
 
     def check(self, directory: str | Path = "output") -> BuildOutput:
         """Run the checks and write the summary only; the files of an earlier build are kept.

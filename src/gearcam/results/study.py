@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,7 +21,7 @@ from gearcam.results.written import BuildOutput
 
 if TYPE_CHECKING:
     from gearcam.pictures.charts import Chart
-    from gearcam.pictures.scenes import ContactPoints, Scene
+    from gearcam.pictures.scenes import ColouredCurve, ContactPoints, Scene
 
 Progress = Callable[[str, int, int], None]
 """Called with the name of the next stage, the number of stages done and their total."""
@@ -32,10 +32,14 @@ def silent(stage: str, done: int, total: int) -> None:
 
 
 def merged(checked: Sequence[Finding], studies: Collection[StudyResult]) -> tuple[Finding, ...]:
-    """Return the findings of `studies`, and those `checked` that they do not repeat, in order."""
+    """Return the findings of `studies`, and those `checked` that they do not repeat, in order.
+
+    Of studies that find the same, that which repeats it counts.
+    """
     repeated = {code for one in studies for code in one.study.repeats}
-    kept = (one for one in checked if one.code not in repeated)
-    return in_order((*kept, *(finding for one in studies for finding in one.study_findings)))
+    every = [*((one, ()) for one in checked)]
+    every += [(found, one.study.repeats) for one in studies for found in one.study_findings]
+    return in_order(one for one, own in every if one.code not in repeated or one.code in own)
 
 
 def _nothing(_: Scene) -> dict[str, ContactPoints]:
@@ -64,6 +68,8 @@ class StudyResult(NotebookView):
         ``drawn()`` returns its `charts`; called when they are first read.
     overlay : callable
         ``overlay(scene)`` returns points of contact for the moving picture, by name.
+    coloured : callable
+        ``coloured()`` returns curves of the moving picture with values along them.
     pages : mapping of str to bytes
         Files beside the table, by name.
     lines : tuple of str
@@ -87,6 +93,7 @@ class StudyResult(NotebookView):
     study_findings: tuple[Finding, ...] = ()
     drawn: Callable[[], Mapping[str, Chart]] = dict
     overlay: Callable[[Scene], Mapping[str, ContactPoints]] = _nothing
+    coloured: Callable[[], Iterable[ColouredCurve]] = tuple
     pages: Mapping[str, bytes] = field(default_factory=dict)
     lines: tuple[str, ...] = ()
     interrupted: str = ""
@@ -110,7 +117,9 @@ class StudyResult(NotebookView):
 
     def __getstate__(self) -> dict[str, Any]:
         # what charts are drawn from need not be picklable
-        return pickled({**vars(self), "charts": self.charts, "drawn": dict})
+        curves = tuple(self.coloured())
+        kept = {"charts": self.charts, "drawn": dict, "coloured": partial(tuple, curves)}
+        return pickled({**vars(self), **kept})
 
     @cached_property
     def columns(self) -> Columns:

@@ -75,6 +75,7 @@ STUDIES: Final = studies_of(
         compute=deferred(f"{_HERE}.stress:study_stress"),
         demand=deferred(f"{_HERE}.stress:demand"),
         options={"teeth": "tooth"},
+        repeats=("contact-pressure",),  # with the true shares
     ),
     ACCURACY,
 )

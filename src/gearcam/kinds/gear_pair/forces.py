@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.result import GearPairResult
     from gearcam.mechanics.wheel_load import WheelLoadSpec
     from gearcam.numeric.arrays import Array, Ints
+    from gearcam.pictures.scenes import ColouredCurve
     from gearcam.results.study import Progress
 
 _TURN: Final = 2.0 * math.pi
@@ -41,6 +42,9 @@ _ROUNDING: Final = 1e-12
 
 _NARROW: Final = 1e-9
 """Width, over the turn or travel, to which an extreme is narrowed."""
+
+PRESSURE: Final = "contact pressure, MPa"
+"""Axis of charts, and what flanks are coloured by."""
 
 _NOISE: Final = 1e-9
 """Share of the largest value that is 0."""
@@ -253,6 +257,7 @@ def study_forces(result: GearPairResult, progress: Progress) -> StudyResult:
         group=_facts(under, loaded),
         study_findings=findings,
         drawn=partial(_charts, under, loaded),
+        coloured=partial(_pressed, under, loaded),
     )
 
 
@@ -409,7 +414,7 @@ def _charts(under: PairUnderLoad, loaded: LoadedPair) -> dict[str, Chart]:
     over(
         "pressure",
         "Contact pressure (Hertz)",
-        "contact pressure, MPa",
+        PRESSURE,
         {"most loaded tooth": forces.largest(loaded.pressure)},
     )
     if np.isfinite(forces.efficiency).any():
@@ -423,7 +428,7 @@ def _charts(under: PairUnderLoad, loaded: LoadedPair) -> dict[str, Chart]:
     charts["flank_pressure"] = Chart(
         title="Contact pressure along the flanks",
         x="from the wheel's own axis, mm",
-        y="contact pressure, MPa",
+        y=PRESSURE,
         lines=tuple(
             Line(label=label, x=np.abs(teeth.points.point - axis), y=loaded.pressure, dots=True)
             for label, axis in _axes(under)
@@ -437,3 +442,30 @@ def _axes(under: PairUnderLoad) -> Iterator[tuple[str, complex]]:
     yield "driver", 0j
     if not under.result.pair.on_rack:
         yield "driven wheel", complex(under.sides[0][0].distance)
+
+
+def _pressed(under: PairUnderLoad, loaded: LoadedPair) -> Iterator[ColouredCurve]:
+    """Yield the flanks of both elements with their contact pressure; of the lowest step."""
+    from gearcam.pictures.scenes import ColouredCurve
+
+    forces, result, teeth = loaded.forces, under.result, loaded.forces.teeth
+    if np.isnan(loaded.pressure).all():
+        return
+    step, point = teeth.points.step, teeth.points.point
+    guide, phi1 = result.pair.rolling.guide, forces.phi1[step]
+    pose = guide.pose(forces.phi2[step])
+    own = point - under.sides[0][0].distance - pose.shift
+    frames = point * np.exp(1j * phi1), own * np.conj(pose.rotation)
+    for part, number, points in zip(result.parts, teeth.teeth, frames, strict=True):
+        order = np.lexsort((step, number))
+        order = order[teeth.level[order] == 0]
+        # a flank ends where the tooth changes, and where it meets the next one a turn later
+        apart = np.diff(number[order]) != 0
+        apart |= np.diff(phi1[order]) > 0.5 * _TURN
+        cuts = np.flatnonzero(apart) + 1
+        yield ColouredCurve(
+            body=part.name,
+            places=np.insert(np.degrees(phi1[order]), cuts, np.nan),
+            points=np.insert(points[order], cuts, np.nan),
+            values={PRESSURE: np.insert(loaded.pressure[order], cuts, np.nan)},
+        )

@@ -26,16 +26,20 @@ from gearcam.pictures.charts import Chart, Line, knot_marks
 from gearcam.results.study import StudyResult
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from gearcam.kinds.gear_pair.result import GearPairResult
     from gearcam.numeric.arrays import Array
+    from gearcam.pictures.scenes import ColouredCurve
     from gearcam.results.study import Progress
     from gearcam.stress.checks import CertifiedRoot, StressedPair
     from gearcam.stress.region import Region
 
 _PER_TOOTH: Final = 10
 """Phases for each tooth of the driver unless given."""
+
+WORST: Final = "worst root of the tooth over the turn, MPa"
+"""What wheels are coloured by."""
 
 
 def demand(design: Any) -> None:
@@ -106,6 +110,7 @@ def study_stress(result: GearPairResult, progress: Progress) -> StudyResult:
         group=_facts(pair, entries, stressed, complete=not interrupted),
         study_findings=run_checks(STRESS, stressed, result.design.limits),
         drawn=partial(_charts, pair, entries),
+        coloured=partial(_stressed_teeth, pair, entries),
         pages={
             "stiffness.csv": table_bytes(_stiffness(pair, entries)),
             **_pictures(pair, certified),
@@ -367,7 +372,7 @@ def _charts(pair: ElasticPair, entries: Entries) -> dict[str, Chart]:
         "lag, mm" if on_rack else "lag, arcsec",
         {"lag": lag},
     )
-    per = "N/mm" if on_rack else "N mm/rad"
+    per, part = ("N/mm", 1.0) if on_rack else ("kN m/rad", 1e-6)
     return {
         "roots": over(
             "Largest stress in the roots of either wheel",
@@ -379,7 +384,31 @@ def _charts(pair: ElasticPair, entries: Entries) -> dict[str, Chart]:
         "stiffness": over(
             "Stiffness of the mesh",
             f"stiffness, {per}",
-            {"stiffness": pair.width * entries.stiffness},
+            {"stiffness": part * pair.width * entries.stiffness},
         ),
         "shares": over("Larger share of the load", "share", {"largest of all pairs": larger}),
     }
+
+
+def _stressed_teeth(pair: ElasticPair, entries: Entries) -> Iterator[ColouredCurve]:
+    """Yield the outlines of both wheels, each tooth in the colour of its worst root."""
+    from gearcam.pictures.scenes import ColouredCurve
+    from gearcam.stress.region import tooth_spans
+
+    result, phi1 = pair.result, np.degrees(entries.phi1)
+    for part, gear, region, worst in zip(
+        result.parts, result.gears, pair.regions, entries.worst, strict=True
+    ):
+        _, spans = tooth_spans(region, gear)
+        curve, s = region.teeth, region.teeth.places
+        past = (s[:, None] - spans[:, 0]) % curve.length
+        tooth = past.argmin(axis=1)
+        inside = past[np.arange(len(s)), tooth] <= spans[tooth, 1] - spans[tooth, 0]
+        points = np.where(inside, curve.at(s)[0], np.nan)
+        values = np.where(inside, worst.max(axis=0)[tooth], np.nan)
+        yield ColouredCurve(
+            body=part.name,
+            places=phi1[worst.argmax(axis=0)[tooth]],
+            points=points,
+            values={WORST: values},
+        )

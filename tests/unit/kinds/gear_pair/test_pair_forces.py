@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import shapely
 
 import gearcam
 from gearcam.base.errors import DesignError
@@ -174,6 +175,18 @@ def test_a_mechanism_hands_over_its_torque(tmp_path: Path) -> None:
     made = gearcam.build(gearcam.load(file)).study("forces")
     own = machine.facts["torque.torque_nm.max"]
     assert made.facts["forces.torque_nm.max"] == pytest.approx(own, rel=1e-6)
+
+
+def test_flanks_are_coloured_by_their_pressure() -> None:
+    """Its points lie on the flanks, in the frame of their wheel."""
+    made = study(ELLIPSE, [24, 24])
+    for gear, curve in zip(made.result.gears, made.coloured(), strict=True):
+        (pressure,) = curve.values.values()
+        points = curve.points[np.isfinite(curve.points)]
+        outline = shapely.LinearRing(np.column_stack([gear.outline[:, 0], gear.outline[:, 1]]))
+        away = shapely.distance(shapely.points(points.real, points.imag), outline)
+        assert away.max() < 0.011  # the tolerance of the chords
+        assert np.nanmax(pressure) == pytest.approx(made.facts["forces.pressure_mpa.max"])
 
 
 REFUSED: dict[str, tuple[Any, Any, str]] = {

@@ -14,6 +14,7 @@ from gearcam.base.errors import DesignError, InfeasibleError, MissingExtraError
 from gearcam.kinds.gear_pair import elastic_pair, stress
 from helpers_remedies import DOOR, ELLIPSE, pair
 
+ROOTS = ("tension_mpa", "compression_mpa")
 LOAD = [{"torque_nm": 40}]
 
 
@@ -77,6 +78,32 @@ def test_charts_show_roots_lag_and_shares() -> None:
     assert {*charts} == {"roots", "roots_of_teeth", "lag", "stiffness", "shares"}
     for chart in charts.values():
         assert all(np.isfinite(line.y).all() for line in chart.lines)
+
+
+def test_wheels_are_coloured_by_their_worst_roots() -> None:
+    for number, curve in enumerate(study().coloured()):
+        (values,) = curve.values.values()
+        screen = study().facts
+        ends = [screen[f"stress.gears.{number}.screen.{sort}"] for sort in ROOTS]
+        assert curve.body == f"gear{number + 1}"
+        assert np.nanmax(values) == pytest.approx(max(map(abs, ends)))
+        assert len(np.unique(values[np.isfinite(values)])) == 12  # a colour for each tooth
+
+
+def test_pictures_of_roots_name_the_stresses() -> None:
+    pictures = {name: one for name, one in study().files.items() if name.endswith(".svg")}
+    assert len(pictures) == 2
+    for number, content in enumerate(pictures.values()):
+        known = study().facts[f"stress.gears.{number}.root.tension_mpa"]
+        assert f"tension {known:.4g} MPa" in content.decode()
+
+
+@pytest.mark.slow
+def test_the_report_has_the_pictures() -> None:
+    asked = {"files": ["report"], "studies": ["stress"]}
+    page = built(output=asked, stress={"phases": 24}).files("report")["report.html"].decode()
+    assert page.count('src="data:image/svg+xml') == 2
+    assert "worst root of the tooth over the turn, MPa" in page
 
 
 def test_teeth_and_a_phase_may_be_asked_for() -> None:
