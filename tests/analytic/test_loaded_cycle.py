@@ -101,7 +101,7 @@ def test_stiffness_of_one_pair_of_teeth(teeth: int) -> None:
     expected, iso = STIFFNESS[teeth]
     entries = circles(teeth).entries(pitches(teeth, 20))
     radius = 2.5 * teeth * math.cos(math.radians(20.0))
-    secant = entries.load / entries.lag / radius**2 / 1000.0
+    secant = entries.load / entries.bent / radius**2 / 1000.0
     largest = secant[entries.pairs == 1].max()
     assert largest == pytest.approx(expected, rel=0.03)
     assert 0.75 * iso < largest < iso

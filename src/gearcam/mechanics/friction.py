@@ -118,5 +118,5 @@ class WheelFrictionSpec(ShortRepr):
     @property
     def left_out(self) -> list[str]:
         """What has no friction, in words."""
-        named = {"flanks": self.flank, "journals": self.joint}
+        named = {"flanks": self.flank, "rolling": self.rolling, "journals": self.joint}
         return [name for name, coefficient in named.items() if not coefficient]

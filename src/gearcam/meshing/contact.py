@@ -52,7 +52,8 @@ class Contacts:
     curvature : (n,) array, 1/mm
         Relative curvature of the flanks.
     lever : (2, n) array, mm
-        Distance of the line of force from both shafts; nan for a rack.
+        Distance of the line of force from both shafts; of a rack the cosine of its angle to the
+        travel.
     """
 
     step: Ints
@@ -113,10 +114,8 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
     g2 = -side * two.regularity(second, sf[1], -side)
     way1, way2 = g1 * by_one * first.speed, g2 * by_two * second.speed
     force = side * normal
-    axes = (0.0, pairs.distance)
-    lever = np.abs(np.stack([np.imag(np.conj(point - axis) * force) for axis in axes]))
-    if not pairs.guide.turns:
-        lever[1] = np.nan
+    own = np.imag(np.conj(point) * force)
+    lever = np.abs(np.stack([own, pairs.guide.lever(point - pairs.distance, force)]))
     with np.errstate(divide="ignore", invalid="ignore"):
         specific = np.stack([(way1 + way2) / way1, (way1 + way2) / way2])
         curvature = side * (first.kappa / g1 - second.kappa / g2)

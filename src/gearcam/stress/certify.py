@@ -135,6 +135,7 @@ def certified(
     moduli: PlaneModuli,
     *,
     others: Sequence[FlankLoad] = (),
+    within: tuple[float, float] | None = None,
     tolerance: float = TOLERANCE,
     most: int = MOST,
 ) -> Certificate:
@@ -155,6 +156,9 @@ def certified(
         Elasticity of the wheel.
     others : sequence of FlankLoad
         Loads on other teeth at the same time.
+    within : (float, float), optional
+        s on the curve with the teeth between which stresses are looked for, such as those of a
+        tooth; by default anywhere.
     tolerance : float
         Relative error.
     most : int
@@ -179,13 +183,17 @@ def certified(
             limit=share * abs(widest.force),
             unit="N/mm",
         )
-    mesh, solved, errors = first_mesh(region, module, loads), list[_Solved](), np.full(3, np.inf)
+    mesh, solved, errors = (
+        first_mesh(region, module, loads, within),
+        list[_Solved](),
+        np.full(3, np.inf),
+    )
     while not solved or errors[:2].max() > tolerance:
         if solved:
             mesh = _refined(solved[-1], module, load.curve)
             if 2 * len(mesh.nodes) > most:
                 break
-        solved.append(_solved(ElasticBody(mesh=mesh, moduli=moduli), module, loads))
+        solved.append(_solved(ElasticBody(mesh=mesh, moduli=moduli), module, loads, within))
         errors = _errors(solved)
     tension, compression = solved[-1].tension, solved[-1].compression
     corners = region.teeth.at(sharp_corners(region.teeth))[0]
@@ -206,8 +214,13 @@ def certified(
     )
 
 
-def first_mesh(region: Region, module: float, loads: Sequence[FlankLoad]) -> CurvedMesh:
-    """Return a mesh that is small at each load and in the fillets on both sides of it.
+def first_mesh(
+    region: Region,
+    module: float,
+    loads: Sequence[FlankLoad],
+    within: tuple[float, float] | None = None,
+) -> CurvedMesh:
+    """Return a mesh that is small at each load, in the fillets beside it, and in some of a tooth.
 
     Parameters
     ----------
@@ -217,6 +230,8 @@ def first_mesh(region: Region, module: float, loads: Sequence[FlankLoad]) -> Cur
         Its module.
     loads : sequence of FlankLoad
         The loads.
+    within : (float, float), optional
+        See `certified`.
 
     Returns
     -------
@@ -236,6 +251,8 @@ def first_mesh(region: Region, module: float, loads: Sequence[FlankLoad]) -> Cur
         [ends[ends[:, 1] < one.place, 0].max(), ends[ends[:, 0] > one.place, 1].min()]
         for one in loads
     ]
+    if within is not None:
+        spans.append([within[0], within[0] + (within[1] - within[0]) % curve.length])
     points, sizes = outline_sizes(region, module, np.array(spans))
     at_loads = [curve.at(one.place + one.half_width * _ACROSS)[0] for one in loads]
     least = [max(one.half_width, _AT_LOAD * module) for one in loads]
@@ -244,11 +261,20 @@ def first_mesh(region: Region, module: float, loads: Sequence[FlankLoad]) -> Cur
     return CurvedMesh.of(graded(region, points, sizes, LARGEST * module))
 
 
-def _solved(body: ElasticBody, module: float, loads: Sequence[FlankLoad]) -> _Solved:
+def _solved(
+    body: ElasticBody,
+    module: float,
+    loads: Sequence[FlankLoad],
+    within: tuple[float, float] | None,
+) -> _Solved:
     forces = nodal_forces(body.mesh, loads)
     moved = body.displacements(forces.sum(axis=1, keepdims=True))
     edge = edge_stress(body, moved[:, 0], loads[0].curve)
     looked = looked_at(edge, module, loads)
+    if within is not None:
+        low, high = within
+        length = edge.curve.length
+        looked &= (edge.s - low) % length <= (high - low) % length
     if not looked.any():
         what = "no stress can be given: all fillets are beside the load or sharp corners"
         raise InfeasibleError(what)

@@ -81,6 +81,8 @@ class StressedPair(ShortRepr):
         Certified stresses.
     yields : float or None, MPa
         The lower yield stress.
+    unstated : (m,) array, rad
+        Phases with a load at which no teeth carry, or friction locks them.
     held : str
         What was held where a wheel has no bore, in words; empty otherwise.
     """
@@ -92,15 +94,17 @@ class StressedPair(ShortRepr):
     on_edge: Mask
     certified: tuple[CertifiedRoot, ...]
     yields: float | None
+    unstated: Array
     held: str = ""
 
     def place_of(self, contact: int) -> str:
         """Return the phase of a contact in words."""
         return angle_text(float(self.phi1[self.step[contact]]))
 
-    def stretches(self, mask: Mask) -> str:
-        """Return in words where a mask of the phases holds."""
-        rows = np.flatnonzero(mask)
+    @property
+    def edge_stretches(self) -> str:
+        """Where the ends of flanks carry, in words."""
+        rows = np.flatnonzero(self.on_edge)
         groups = np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
         return ranges_text([(float(self.phi1[x[0]]), float(self.phi1[x[-1]])) for x in groups])
 
@@ -143,7 +147,21 @@ def loaded_edge(pair: StressedPair, limit: float) -> Iterator[Remark]:  # noqa: 
         yield Remark(
             "Teeth bend, so that the edge of the next tooth's tip carries, too: tip relief avoids "
             "it. The pressure there is not stated.",
-            pair.stretches(pair.on_edge),
+            pair.edge_stretches,
+        )
+
+
+@check("unstated-stress", kind=STRESS)
+def unstated_stress(pair: StressedPair, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Warn of phases whose stress is not stated.
+
+    Looks at: phases with a load at which neither flanks nor edges touch, or friction locks.
+    """
+    if pair.unstated.size:
+        first = angle_text(float(pair.unstated[0]))
+        yield Remark(
+            "No teeth carry here, or friction locks them: these phases are in no largest value.",
+            f"{first}, and {pair.unstated.size - 1} more phases",
         )
 
 

@@ -39,8 +39,8 @@ class TouchingTeeth(ShortRepr):
         The point of contact in each wheel's own frame.
     directions : (2, k) complex array
         Unit direction of the normal force on each wheel, in its own frame.
-    lever : (k,) array, mm
-        Lever about the driven shaft, above 0.
+    lever, gain : (k,) arrays, mm
+        Lever of the normal about the driven shaft, above 0, and of the force with friction.
     gap : (k,) array, mm
         Gap between the flanks, 0 where they touch.
     curvature : (k,) array, 1/mm
@@ -54,6 +54,7 @@ class TouchingTeeth(ShortRepr):
     points: Plane
     directions: Plane
     lever: Array
+    gain: Array
     gap: Array
     curvature: Array
     edge: Mask
@@ -118,7 +119,7 @@ class LoadedCycle(ShortRepr):
 
 
 def touching_teeth(
-    pairs: FlankPairs, phi1: Array, found: Contacts, about: EdgeGaps | None
+    pairs: FlankPairs, phi1: Array, found: Contacts, gain: Array, about: EdgeGaps | None
 ) -> TouchingTeeth:
     """Return the contacts of one side that may carry.
 
@@ -130,8 +131,10 @@ def touching_teeth(
         Phases.
     found : Contacts
         Its flank contacts at them.
+    gain : (k,) array, mm
+        Levers of their forces with friction.
     about : EdgeGaps or None
-        Pairs about to touch on an edge.
+        Pairs about to touch on an edge; these are without friction.
 
     Returns
     -------
@@ -147,7 +150,7 @@ def touching_teeth(
     order = np.lexsort((pair, step))
     step, pair = step[order], pair[order]
     point, force = joined("point")[order], joined("force")[order]
-    levers = [found.lever[1], *(one.lever for one in edges)]
+    on_edges = [one.lever for one in edges]
     gaps = [np.zeros(len(found.step)), *(one.gap for one in edges)]
     # all touch at the lead of the phase, but for gaps that are small beside the wheels
     lead = np.zeros(len(phi1))
@@ -160,7 +163,8 @@ def touching_teeth(
         teeth=np.stack([wheel.number(pair) for wheel in pairs.wheels]),
         points=np.stack([point * ahead, own * back]),
         directions=np.stack([-force * ahead, force * back]),
-        lever=np.concatenate(levers)[order],
+        lever=np.concatenate([found.lever[1], *on_edges])[order],
+        gain=np.concatenate([gain, *on_edges])[order],
         gap=np.concatenate(gaps)[order],
         curvature=joined("curvature")[order],
         edge=np.repeat([False, True], [len(found.step), len(step) - len(found.step)])[order],
@@ -199,11 +203,17 @@ def loaded_cycle(
     for wheel, (_, at, shares) in zip(wheels, found, strict=True):
         columns, parts = touching.padded(at, count), touching.padded(shares, count)
         work = wheel.compliance[columns[:, :, None, :, None], columns[:, None, :, None, :]]
-        compliance = compliance + np.einsum("nip,njq,nijpq->nij", parts, parts, work, optimize=True)
+        made = np.einsum("nip,njq,nijpq->nij", parts, parts, work, optimize=True)
+        # along a flank the displacement under the force itself is smooth, that beside it has a peak
+        own = np.einsum("nip,nip->ni", parts, np.diagonal(wheel.compliance)[columns])
+        contact = np.arange(own.shape[1])
+        made[:, contact, contact] = own
+        compliance = compliance + made
     curvature = touching.padded(touching.curvature, count, 1.0)
     sharing = share(
         compliance,
         touching.padded(touching.lever, count),
+        touching.padded(touching.gain, count),
         touching.padded(touching.gap, count),
         curvature,
         load,

@@ -30,6 +30,10 @@ SPREAD: Final = 0.16
 """Half the length of the arc that a unit force is spread over, in modules, and the size of the
 triangles on the flanks."""
 
+_END: Final = 0.05
+"""Distance of the first and last place from the ends of a flank, in modules. Beside an end the arc
+is as much shorter."""
+
 _FILLET: Final = 0.25
 """Size of the triangles in the fillets, in modules."""
 
@@ -57,7 +61,8 @@ class Influence(ShortRepr):
     spread : float, mm
         Half the length of the arc that a unit force is spread over.
     compliance : (t*p, t*p) array, mm^2/N
-        Mean displacement at a place, along the inward normal, under 1 N/mm at another.
+        Mean displacement at a place, along the inward normal, under 1 N/mm at another. Beside the
+        ends of a flank as if the arc were as long there.
     root_s, root_tooth : (g,) arrays, mm and int
         Gauss points of the edges in fillets, by tooth: s, and the row of the tooth.
     roots : (g, t*p) array, 1/mm
@@ -185,16 +190,19 @@ def influence(
     Influence
     """
     spread = SPREAD * module
-    sources = outline_sizes(region, module, spans, fillet=_FILLET, flank=SPREAD)
+    ends = flanks + _END * module * np.array([1.0, -1.0])
+    half, middle = 0.5 * np.diff(ends, axis=1), ends.mean(axis=1, keepdims=True)
+    along = middle + half * _nodes()
+    to_end = np.minimum(along - flanks[:, :1], flanks[:, 1:] - along)
+    places, widths = along.ravel(), np.minimum(to_end, spread).ravel()
+    points, tangents = region.teeth.at(places)
+    outline, sizes = outline_sizes(region, module, spans, fillet=_FILLET, flank=SPREAD)
+    sources = np.concatenate([outline, points]), np.concatenate([sizes, widths])
     mesh = CurvedMesh.of(graded(region, *sources, LARGEST * module))
     body = ElasticBody(mesh=mesh, moduli=moduli)
-    ends = flanks + spread * np.array([1.0, -1.0])
-    half, middle = 0.5 * np.diff(ends, axis=1), ends.mean(axis=1, keepdims=True)
-    places = (middle + half * _nodes()).ravel()
-    inward = 1j * region.teeth.at(places)[1]
     loads = [
-        FlankLoad(curve=region.toothed, place=float(s), half_width=spread, force=complex(force))
-        for s, force in zip(places, inward, strict=True)
+        FlankLoad(curve=region.toothed, place=float(s), half_width=float(width), force=force)
+        for s, width, force in zip(places, widths, (1j * tangents).tolist(), strict=True)
     ]
     forces = nodal_forces(mesh, loads)
     root_s, at_root, root_tooth = _roots(body, module, spans)
@@ -208,13 +216,17 @@ def influence(
         compliance[:, some] = (work @ moved[loaded]).real
         for number, one in enumerate(moved.T, start=first):
             roots[:, number] = edge_stress(body, one, region.toothed).stress[at_root]
+    compliance = 0.5 * (compliance + compliance.T)
+    # a shorter arc moves more at its own place, as on a half plane
+    own = 2.0 / (np.pi * moduli.along_edge) * np.log(widths / spread)
+    compliance[np.diag_indices(len(own))] += own
     return Influence(
         body=body,
         module=module,
         numbers=numbers,
         ends=ends,
         spread=spread,
-        compliance=0.5 * (compliance + compliance.T),
+        compliance=compliance,
         root_s=root_s,
         root_tooth=root_tooth,
         roots=roots,

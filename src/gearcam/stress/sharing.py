@@ -1,8 +1,9 @@
 """How teeth that touch together share the load, and how far the driven wheel lags.
 
 The normals of all contacts of a phase pass through one pitch point, so one condition of equilibrium
-is enough: ``sum F_i*a_i = T``, with the levers a_i about the driven shaft. With the lag e of the
-driven wheel behind its nominal place each contact closes by ``a_i*e``, which its bodies take::
+is enough: ``sum F_i*g_i = T``, with the levers g_i of the forces about the driven shaft, friction
+included. With the lag e of the driven wheel behind the place at which flanks touch, each contact
+closes by ``a_i*e``, with the lever a_i of the normal, and its bodies take this::
 
     sum_j C_ij*F_j + local_i(F_i) + gap_i = a_i*e   where F_i > 0, and >= where F_i = 0
 
@@ -23,6 +24,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.display import ShortRepr
+from gearcam.base.errors import InfeasibleError
 from gearcam.numeric.arrays import Array
 
 _STEPS: Final = 60
@@ -94,6 +96,7 @@ class ContactWidths(ShortRepr):
 def share(
     compliance: Array,
     lever: Array,
+    gain: Array,
     gap: Array,
     curvature: Array,
     load: Array,
@@ -106,7 +109,9 @@ def share(
     compliance : (n, m, m) array, mm^2/N
         Of both wheels together, symmetric.
     lever : (n, m) array, mm
-        Levers about the driven shaft, above 0; 0 where there is no such contact.
+        Levers of the normals about the driven shaft, above 0; 0 where there is no such contact.
+    gain : (n, m) array, mm
+        Levers of the forces with friction: of equilibrium, above 0.
     gap : (n, m) array, mm
         Distance of the flanks along their normal, 0 of those that touch.
     curvature : (n, m) array, 1/mm
@@ -119,14 +124,19 @@ def share(
     Returns
     -------
     Sharing
+
+    Raises
+    ------
+    InfeasibleError
+        If no shares were found.
     """
     count, most = lever.shape
     there = lever > 0.0
     first = np.where(there, gap / np.where(there, lever, 1.0), np.inf)
     carries = there & (first <= first.min(axis=1, keepdims=True))
-    force = load[:, None] * np.where(carries, lever, 0.0)
-    force /= (force * lever).sum(axis=1, keepdims=True) / load[:, None]
-    scale = load / lever.max(axis=1)
+    force = load[:, None] * np.where(carries, gain, 0.0)
+    force /= (force * gain).sum(axis=1, keepdims=True) / load[:, None]
+    scale = load / gain.max(axis=1)
     lag = np.zeros(count)
     diagonal = np.arange(most)
     system = np.zeros((count, most + 1, most + 1))
@@ -140,18 +150,20 @@ def share(
         system[:, :most][~carries] = 0.0
         system[:, diagonal, diagonal] = np.where(carries, system[:, diagonal, diagonal], 1.0)
         system[:, :most, most] = np.where(carries, -lever, 0.0)
-        system[:, most, :most] = lever
+        system[:, most, :most] = np.where(there, gain, 0.0)
         system[:, most, most] = 0.0
         left = np.where(carries, lever * lag[:, None] - closing, -force)
-        rest = load - (force * lever).sum(axis=1)
+        rest = load - (force * gain).sum(axis=1)
         step = np.linalg.solve(system, np.column_stack([left, rest])[..., None])[..., 0]
         moved, lag = force + step[:, :most], lag + step[:, most]
         pressed = there & np.where(carries, moved > 0.0, lever * lag[:, None] > closing)
         force = np.where(carries & pressed, moved, 0.0)
         same = (pressed == carries).all()
         carries = pressed
-        if same and np.abs(step[:, :most]).max(initial=0.0) <= _SMALL * scale.max(initial=0.0):
+        if same and (np.abs(step[:, :most]) <= _SMALL * scale[:, None]).all():
             break
+    else:
+        raise InfeasibleError("how the teeth share the load was not found", where="load")
     # the last unknown is the lag: its change under a unit of load is the compliance of the pair
     compliance = np.asarray(np.linalg.inv(system)[:, most, most], dtype=np.float64)
     return Sharing(force=force, lag=lag, stiffness=1.0 / compliance)

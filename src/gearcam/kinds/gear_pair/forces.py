@@ -129,6 +129,12 @@ class PairUnderLoad:
                 raise DesignError([Problem(what, file=source, key=key, allowed="finite values")])
         return np.sum(found, axis=0)
 
+    def without_friction(self, phi1: Array) -> Array:
+        """Return the load on the driven element at driver angles, rad, (n,), if nothing rubs."""
+        given = self._given(phi1)
+        _, ratio = self.result.pair.rolling.guide.motion(phi1)
+        return given / ratio if self.on_driver else given
+
     def loaded(self, phi1: Array) -> LoadedPair:
         """Return the forces at driver angles, rad, (n,)."""
         design = self.result.design
@@ -155,12 +161,15 @@ class PairUnderLoad:
         """
         even = np.linspace(0.0, self.travel, self.result.design.forces.steps + 1)
         back = self._given(even) < 0.0
-        ends = [
-            pairs.arcs.stretches[0]
+        carrying = [
+            pairs
             for both in self.sides
             for pairs, carries in zip(both, (back.any(), not back.all()), strict=True)
             if carries
         ]
+        ends = [pairs.arcs.stretches[0] for pairs in carrying]
+        # at the pitch point the sliding changes its direction, and so does friction
+        ends += [pairs.track.angle(pairs.wheels[0].place(pairs.numbers)) for pairs in carrying]
         knots = np.concatenate([self.result.knots, *(one.knots for one in self.loads), *ends])
         knots = np.unique(knots[(knots > 0.0) & (knots < self.travel)])
         x = np.unique(np.concatenate([even, knots, np.nextafter(knots, -np.inf)]))

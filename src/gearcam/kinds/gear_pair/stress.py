@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.base.errors import DesignError, MissingExtraError, Problem
+from gearcam.base.errors import DesignError, InfeasibleError, MissingExtraError, Problem
 from gearcam.base.facts import Fact, Tree, extent
 from gearcam.base.findings import run_checks
 from gearcam.base.numerals import formatted
@@ -22,6 +22,7 @@ from gearcam.kinds.gear_pair.elastic_pair import ROOTS, ElasticPair, Entries
 from gearcam.laws.ratio.span import angle_text
 from gearcam.mechanics.hertz import line_pressure
 from gearcam.meshing.settings import STRESS
+from gearcam.numeric import narrowing
 from gearcam.pictures.charts import Chart, Line, knot_marks
 from gearcam.results.study import StudyResult
 
@@ -29,11 +30,14 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from gearcam.kinds.gear_pair.result import GearPairResult
-    from gearcam.numeric.arrays import Array
+    from gearcam.numeric.arrays import Array, Ints
     from gearcam.pictures.scenes import ColouredCurve
     from gearcam.results.study import Progress
     from gearcam.stress.checks import CertifiedRoot, StressedPair
     from gearcam.stress.region import Region
+
+_NARROW: Final = 1e-3
+"""Width, over that of a step, to which an extreme is narrowed."""
 
 _PER_TOOTH: Final = 10
 """Phases for each tooth of the driver unless given."""
@@ -89,9 +93,11 @@ def study_stress(result: GearPairResult, progress: Progress) -> StudyResult:
     """
     pair = ElasticPair(result, progress)
     asked = _asked(pair)
-    certified: list[CertifiedRoot] = []
     with result.stage("shares"):
-        entries = pair.entries(_phases(pair))
+        even = _phases(pair)
+        entries = pair.entries(even)
+        entries = pair.entries(np.union1d(even, extremes(pair, even, entries)))
+    certified: list[CertifiedRoot] = []
     interrupted = ""
     with result.stage("certificates"):
         try:
@@ -101,7 +107,7 @@ def study_stress(result: GearPairResult, progress: Progress) -> StudyResult:
                 certified.append(pair.certified(own, wheel, tooth, entry))
         except KeyboardInterrupt:
             interrupted = f"{len(certified)} certified stresses"
-    stressed = _stressed(pair, entries, tuple(certified))
+    stressed = _stressed(pair, even, entries, tuple(certified))
     return StudyResult(
         result=result,
         study=result.kind.studies["stress"],
@@ -120,9 +126,55 @@ def study_stress(result: GearPairResult, progress: Progress) -> StudyResult:
 
 
 def _phases(pair: ElasticPair) -> Array:
-    """Return the driver angles that are studied, rad: in the middles of even parts of a turn."""
+    """Return the driver angles that are studied at first, rad: middles of even parts of a turn."""
     count = pair.spec.phases or _PER_TOOTH * pair.result.pair.teeth[0]
     return pair.under.travel * (np.arange(count) + 0.5) / count
+
+
+def _sought(entries: Entries, phi1: Array) -> Array:
+    """Return what is sought at rising driver angles, (4, n): -inf where nothing carries.
+
+    The worst root of either wheel, and the lag, both ways.
+    """
+    found = np.full((4, len(phi1)), -np.inf)
+    at = np.searchsorted(phi1, entries.phi1)
+    rows = (*(one.max(axis=1) for one in entries.worst), entries.lag, -entries.lag)
+    for number, values in enumerate(rows):
+        np.maximum.at(found[number], at, values)
+    return found
+
+
+def extremes(pair: ElasticPair, even: Array, entries: Entries) -> Array:
+    """Return where roots are stressed most, and the lag is most and least, between phases.
+
+    Parameters
+    ----------
+    pair : ElasticPair
+        The pair.
+    even : (n,) array, rad
+        Evenly spaced driver angles.
+    entries : Entries
+        The pair at them.
+
+    Returns
+    -------
+    (k,) array, rad
+    """
+    which, at = narrowing.highest(_sought(entries, even), np.array([0, len(even)]))
+
+    def function(places: Array, rows: Ints) -> Array:
+        flat, index = np.unique(places, return_inverse=True)
+        try:
+            made = pair.entries(flat)
+        except InfeasibleError:
+            return np.full(places.shape, -np.inf)
+        values = _sought(made, flat)[:, index.reshape(places.shape)]
+        return values[which[rows], np.arange(len(rows))]
+
+    step = pair.under.travel / len(even)
+    places, _ = narrowing.peaks(function, even[at] - step, even[at] + step, _NARROW * step)
+    inside = places if pair.under.turns else places.clip(0.0, pair.under.travel)
+    return np.mod(inside, pair.under.travel) if pair.under.turns else inside
 
 
 Chosen = tuple[Entries, int, int, int]
@@ -144,7 +196,13 @@ def _asked(pair: ElasticPair) -> Callable[[Entries], list[Chosen]]:
 
     def chosen(entries: Entries) -> list[Chosen]:
         if spec.phi1 is not None:
-            entries = pair.entries(np.array([spec.phi1]))
+            try:
+                entries = pair.entries(np.array([spec.phi1]))
+            except InfeasibleError as error:
+                near = float(entries.phi1[np.abs(entries.phi1 - spec.phi1).argmin()])
+                what, key = f"no teeth carry at {angle_text(spec.phi1)}", "stress.phi1_deg"
+                nearest = f"{formatted(math.degrees(near))} deg"
+                raise InfeasibleError(what, where=key, nearest=nearest) from error
         found = []
         for wheel in wheels:
             worst, numbers = entries.worst[wheel - 1], entries.numbers[wheel - 1]
@@ -163,7 +221,7 @@ def _asked(pair: ElasticPair) -> Callable[[Entries], list[Chosen]]:
 
 
 def _stressed(
-    pair: ElasticPair, entries: Entries, certified: tuple[CertifiedRoot, ...]
+    pair: ElasticPair, even: Array, entries: Entries, certified: tuple[CertifiedRoot, ...]
 ) -> StressedPair:
     """Return the input of the checks."""
     from gearcam.stress.checks import StressedPair
@@ -176,7 +234,10 @@ def _stressed(
     bores = (pair.result.design.blank.wheel(number).bore_diameter for number in WHEELS)
     unheld = not (pair.spec.held_diameter or all(bores))
     circles = [formatted(one) for one in map(_held, pair.regions) if one is not None]
+    loaded = np.abs(pair.under.without_friction(even)) > 0.0
+    unstated = loaded & ~np.isin(even, entries.phi1)
     return StressedPair(
+        unstated=even[unstated],
         phi1=entries.phi1,
         lag=entries.lag,
         step=entries.step,
@@ -240,8 +301,9 @@ def _stiffness(pair: ElasticPair, entries: Entries) -> dict[str, Any]:
         **place,
         "pairs": entries.pairs,
         f"lag_{unit}": entries.lag,
+        f"elastic_lag_{unit}": np.sign(entries.load) * entries.bent,
         f"stiffness_{per}": pair.width * entries.stiffness,
-        f"secant_{per}": entries.load / entries.lag,
+        f"secant_{per}": np.abs(entries.load) / entries.bent,
     }
 
 
@@ -257,7 +319,7 @@ def _facts(pair: ElasticPair, entries: Entries, stressed: StressedPair, *, compl
     held = [one for one in map(_held, pair.regions) if one is not None]
     return {
         "plane": pair.spec.plane,
-        "phases": len(_phases(pair)),
+        "phases": len(np.unique(entries.phi1)),
         "held_diameter_mm": held or None,
         "gears": [_of_wheel(entries, stressed, wheel) for wheel in WHEELS],
         f"lag_{unit}": {

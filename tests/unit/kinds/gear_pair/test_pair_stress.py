@@ -12,7 +12,7 @@ import pytest
 import gearcam
 from gearcam.base.errors import DesignError, InfeasibleError, MissingExtraError
 from gearcam.kinds.gear_pair import elastic_pair, stress
-from helpers_remedies import DOOR, ELLIPSE, pair
+from helpers_remedies import CIRCLE, DOOR, ELLIPSE, pair
 
 ROOTS = ("tension_mpa", "compression_mpa")
 LOAD = [{"torque_nm": 40}]
@@ -33,7 +33,8 @@ def study() -> Any:
 def test_every_phase_has_its_forces_and_roots() -> None:
     table, stiffness = study().columns, study().files["stiffness.csv"].decode().split("\n")
     phases, row = np.unique(table["phi1_deg"], return_inverse=True)
-    assert len(phases) == 120 == len(stiffness) - 2
+    assert 120 < len(phases) < 140  # extremes are added
+    assert len(phases) == len(stiffness) - 2
     assert np.bincount(row, table["share"]) == pytest.approx(1.0)
     assert (np.bincount(row) == table["pairs"][np.unique(row, return_index=True)[1]]).all()
     assert (table["tension1_mpa"] > 0.0).all()
@@ -113,6 +114,91 @@ def test_teeth_and_a_phase_may_be_asked_for() -> None:
     assert "stress.gears.0.root" not in facts
     phase = built(stress={"phi1_deg": 100, "wheel": 1, "phases": 24}).study("stress").facts
     assert phase["stress.gears.0.root.phi1_deg"] == pytest.approx(100.0)
+
+
+def test_another_tooth_has_its_own_stress() -> None:
+    """Not that of the tooth that carries."""
+    asked = {"wheel": 1, "teeth": [1, 7], "phi1_deg": 5, "phases": 24}
+    made = built(stress=asked).study("stress")
+    near, far = (made.facts[f"stress.gears.0.roots.{k}.tension_mpa"] for k in (0, 1))
+    assert near > 5.0 * abs(far)
+
+
+def test_extremes_lie_between_the_phases() -> None:
+    """Few phases find what many do."""
+    few, many = (built(stress={"phases": one, "edges": False}) for one in (48, 480))
+    pairs = [elastic_pair.ElasticPair(one) for one in (few, many)]
+    worst = []
+    for pair_of, count in zip(pairs, (48, 480), strict=True):
+        even = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False) + np.pi / count
+        entries = pair_of.entries(even)
+        added = pair_of.entries(stress.extremes(pair_of, even, entries))
+        worst.append([one.max() for one in added.worst] + [added.lag.max(), -added.lag.min()])
+    assert worst[0] == pytest.approx(worst[1], rel=2e-3)
+
+
+def test_friction_is_in_the_balance() -> None:
+    """With one pair alone each phase: its force is what the study of forces has for it."""
+    tables = {"friction": {"flank": 0.2}, "stress": {"alone": True, "phases": 24, "wheel": 1}}
+    made = elastic_pair.ElasticPair(built(**tables))
+    entries = made.entries(np.array([0.3]))
+    forces = made.under.loaded(np.array([0.3])).forces
+    gain = forces.teeth.gain[1]
+    assert entries.force * made.width == pytest.approx(40_000.0 / gain, rel=1e-9)
+    assert entries.load == pytest.approx(40_000.0)
+
+
+def test_a_rack_and_its_wheel() -> None:
+    law = {"type": "rack", "r1": "1"}
+    document = pair(law, [14, 14], load=[{"force_n": 2000}], stress={"phases": 24, "wheel": 1})
+    made = gearcam.build(gearcam.design(document)).study("stress")
+    assert 0.0 < made.facts["stress.lag_mm.min"] < made.facts["stress.lag_mm.max"] < 0.1
+    assert made.facts["stress.gears.0.root.error"] < 0.01
+    sums = np.zeros(len(np.unique(made.columns["phi1_deg"])))
+    np.add.at(sums, np.unique(made.columns["phi1_deg"], return_inverse=True)[1],
+              made.columns["force_n"])  # fmt: skip
+    flat = sums * np.cos(np.radians(20.0))
+    assert flat == pytest.approx(2000.0, rel=0.05)  # on an edge the normal is another
+
+
+def test_the_lag_is_behind_the_nominal_place() -> None:
+    """With backlash that of the flanks adds to it; a load that pulls leads instead."""
+    free, loose = (
+        elastic_pair.ElasticPair(built(pair={"backlash_mm": gap}, stress={"edges": False}))
+        for gap in (0.0, 0.1)
+    )
+    phi1 = np.array([0.4, 1.9])
+    one, other = free.entries(phi1), loose.entries(phi1)
+    lead = loose.under.loaded(phi1).forces.teeth.points
+    first = np.array([lead.lead[lead.step == k][0] for k in range(2)])
+    assert other.lag - other.bent == pytest.approx(-first)
+    assert other.bent == pytest.approx(one.bent, rel=0.05)
+    pulled = elastic_pair.ElasticPair(built(load=[{"torque_nm": -40}])).entries(phi1)
+    assert (pulled.lag < 0.0).all()
+    assert (pulled.bent > 0.0).all()
+
+
+def test_soft_teeth_bend_over_wide_gaps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Edges are looked for as far as the teeth bend."""
+    soft = {"material": {"name": ["petg"]}, "pair": {"module_mm": 1}}
+    document = pair(CIRCLE, [16, 16], load=[{"torque_nm": 1.6}], **soft)
+    made = elastic_pair.ElasticPair(gearcam.build(gearcam.design(document)))
+    phi1 = np.linspace(0.1, 0.5, 8)
+    wide = made.entries(phi1)
+    monkeypatch.setattr(elastic_pair, "_FAR", 0.0)
+    narrow = made.entries(phi1)
+    assert wide.bent.mean() < 0.995 * narrow.bent.mean()
+
+
+def test_phases_without_contact_are_told() -> None:
+    rack, tables = {"addendum": 0.55}, {"stress": {"phases": 40, "wheel": 1, "edges": False}}
+    document = pair(CIRCLE, [20, 20], load=[{"torque_nm": 10}], rack=rack, **tables)
+    result = gearcam.build(gearcam.design(document))
+    apart = [one for one in result.study("forces").study_findings if one.code == "unstated-forces"]
+    assert apart
+    made = result.study("stress")
+    told = [one for one in made.study_findings if one.code == "unstated-stress"]
+    assert told or len(np.unique(made.columns["phi1_deg"])) >= 40
 
 
 def test_an_interrupted_study_keeps_its_phases(monkeypatch: pytest.MonkeyPatch) -> None:
