@@ -35,6 +35,13 @@ def merged(checked: Sequence[Finding], studies: Collection[StudyResult]) -> tupl
     """Return the findings of `studies`, and those `checked` that they do not repeat, in order.
 
     Of studies that find the same, that which repeats it counts.
+
+    Parameters
+    ----------
+    checked : sequence of Finding
+        Of the design.
+    studies : collection of StudyResult
+        Its studies.
     """
     repeated = {code for one in studies for code in one.study.repeats}
     every = [*((one, ()) for one in checked)]

@@ -116,7 +116,7 @@ class Entries(ShortRepr):
         return made
 
 
-class Solved(NamedTuple):
+class SolvedSide(NamedTuple):
     """The pair with flanks of one side under load.
 
     Attributes
@@ -234,7 +234,7 @@ class ElasticPair:
             raise InfeasibleError(what, where="load", nearest=near)
         return _joined(found)
 
-    def _of_side(self, side: int, phi1: Array, load: Array, gain: Array) -> list[Solved]:
+    def _of_side(self, side: int, phi1: Array, load: Array, gain: Array) -> list[SolvedSide]:
         """Return the pair with flanks of one side under loads, which are above 0."""
         from gearcam.meshing.about_to_touch import about_to_touch
         from gearcam.stress.cycle import loaded_cycle, touching_teeth
@@ -266,7 +266,7 @@ class ElasticPair:
             closed = float((touching.lever * cycle.sharing.lag[touching.step]).max())
             if about is None or closed < near * module or near > _FAR:
                 sign = 1.0 if side else -1.0
-                return [Solved(phi1[rows], sign * load[rows], sign, -lead[rows], cycle)]
+                return [SolvedSide(phi1[rows], sign * load[rows], sign, -lead[rows], cycle)]
             near *= 2.0
             about = about_to_touch(pairs, phi1, found, near * module)
 
@@ -359,7 +359,7 @@ class ElasticPair:
         )
 
 
-def _joined(found: list[Solved]) -> Entries:
+def _joined(found: list[SolvedSide]) -> Entries:
     """Return the entries of both sides, in order of their phases."""
     phi1, load, signs, behind, cycles = zip(*found, strict=True)
     bent = [one.sharing.lag for one in cycles]
