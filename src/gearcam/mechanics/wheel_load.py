@@ -110,8 +110,11 @@ class WheelLoadSpec(FromFile, PlacedLoad):
 
     @property
     def column(self) -> str:
-        """Name of the column of its file that has its values; empty without one, or a file."""
-        rows = self.rows
+        """Name of the column of its file that has its values; empty without one that is read."""
+        try:
+            rows = self.rows
+        except ColumnsError:
+            return ""
         known = () if rows is None else (one for one in _COLUMNS[self.on] if rows.spelt(one))
         return next(iter(known), "")
 

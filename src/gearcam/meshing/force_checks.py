@@ -32,6 +32,11 @@ class Pressed(Protocol):
         """The lower yield stress, MPa."""
         ...
 
+    @property
+    def shares(self) -> str:
+        """How teeth share the load, in words that end a sentence."""
+        ...
+
     def place_of(self, contact: int) -> str:
         """Return the phase of a contact in words."""
         ...
@@ -57,6 +62,11 @@ class LoadedPair(ShortRepr):
     pressure: Array
     half_width: Array
     yields: float | None
+
+    @property
+    def shares(self) -> str:
+        """How teeth share the load (see `Pressed`)."""
+        return " (with equal shares of the teeth)"
 
     def at(self, index: int) -> str:
         """Return a phase in words."""
@@ -142,7 +152,8 @@ def contact_pressure(loaded: Pressed, limit: float) -> Iterator[Remark]:
     found = float(loaded.pressure[worst])
     if found > most:
         yield Remark(
-            "The contact pressure is too high: wider or larger wheels, or a smaller load lower it.",
+            "The contact pressure is too high: wider or larger wheels, or a smaller load lower it"
+            f"{loaded.shares}.",
             loaded.place_of(worst),
             found,
             limit=most,

@@ -16,7 +16,7 @@ from gearcam.laws.ratio.span import angle_text
 from gearcam.meshing import force_checks as force_checks  # one check is of both studies
 from gearcam.meshing.drive_checks import ranges_text
 from gearcam.meshing.settings import STRESS
-from gearcam.numeric.arrays import Array, Ints, Mask
+from gearcam.numeric.arrays import Array, Ints
 
 if TYPE_CHECKING:
     from gearcam.stress.certify import Certificate
@@ -36,6 +36,8 @@ class CertifiedRoot(ShortRepr):
         Sum of the normal forces on the wheel.
     share : float
         Of the largest of them.
+    loaded : bool
+        Whether the tooth is among those that carry.
     certificate : Certificate
         The stress.
     yields : float or None, MPa
@@ -47,13 +49,24 @@ class CertifiedRoot(ShortRepr):
     phi1: float
     force: float
     share: float
+    loaded: bool
     certificate: Certificate
     yields: float | None
 
     @property
     def safety(self) -> float | None:
-        """Yield stress over the von Mises stress; None without a yield stress."""
-        return None if self.yields is None else self.yields / self.certificate.von_mises
+        """Yield stress over the largest stress along the edge; None without a yield stress.
+
+        At the faces of a wheel nothing acts across, and this is the von Mises stress; in the middle
+        of a wide wheel that is smaller (see `PlaneModuli.equivalent`).
+        """
+        return None if self.yields is None else self.yields / self.largest
+
+    @property
+    def largest(self) -> float:
+        """The larger of tension and compression along the edge, MPa."""
+        peaks = (self.certificate.tension, self.certificate.compression)
+        return max(abs(one.stress) for one in peaks)
 
     @property
     def where(self) -> str:
@@ -75,8 +88,8 @@ class StressedPair(ShortRepr):
         Phase of each contact.
     pressure : (k,) array, MPa
         Contact pressure; nan on an edge, and where nothing carries.
-    on_edge : (n,) bool array
-        Where the end of a flank carries.
+    edge_share : (n,) array
+        Share of the load that the end of a flank carries.
     certified : tuple of CertifiedRoot
         Certified stresses.
     yields : float or None, MPa
@@ -91,11 +104,16 @@ class StressedPair(ShortRepr):
     lag: Array
     step: Ints
     pressure: Array
-    on_edge: Mask
+    edge_share: Array
     certified: tuple[CertifiedRoot, ...]
     yields: float | None
     unstated: Array
     held: str = ""
+
+    @property
+    def shares(self) -> str:
+        """How teeth share the load, in words that end a sentence."""
+        return ", as elastic teeth share it"
 
     def place_of(self, contact: int) -> str:
         """Return the phase of a contact in words."""
@@ -104,7 +122,7 @@ class StressedPair(ShortRepr):
     @property
     def edge_stretches(self) -> str:
         """Where the ends of flanks carry, in words."""
-        rows = np.flatnonzero(self.on_edge)
+        rows = np.flatnonzero(self.edge_share)
         groups = np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
         return ranges_text([(float(self.phi1[x[0]]), float(self.phi1[x[-1]])) for x in groups])
 
@@ -121,7 +139,8 @@ def root_stress(pair: StressedPair, limit: float) -> Iterator[Remark]:
 
     It is an error where the safety is below 1.
 
-    Looks at: yield stress over the certified von Mises stress of the roots, less its error.
+    Looks at: yield stress over the largest certified stress along the edge of the roots, less its
+    error.
     """
     for one in pair.certified:
         if one.safety is None:
@@ -129,25 +148,26 @@ def root_stress(pair: StressedPair, limit: float) -> Iterator[Remark]:
         sure = one.safety / (1.0 + one.certificate.error)
         if sure < limit:
             yield Remark(
-                f"The root of this tooth has a von Mises stress of "
-                f"{formatted(one.certificate.von_mises, 4)} MPa.",
+                f"The root of this tooth has a stress of {formatted(one.largest, 4)} MPa, within "
+                f"{formatted(100.0 * one.certificate.error, 2)} %, which is taken off the safety.",
                 one.where,
                 sure,
                 severity="error" if sure < 1.0 else "warning",
             )
 
 
-@check("loaded-edge", kind=STRESS)
+@check("loaded-edge", kind=STRESS, severity="note", unit="%")
 def loaded_edge(pair: StressedPair, limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Warn of tips that press on a flank with their edge, since teeth bend under the load.
+    """Note tips that press on a flank with their edge, since teeth bend under the load.
 
     Looks at: which pairs of teeth carry that touch on an edge.
     """
-    if pair.on_edge.any():
+    if pair.edge_share.any():
         yield Remark(
-            "Teeth bend, so that the edge of the next tooth's tip carries, too: tip relief avoids "
-            "it. The pressure there is not stated.",
+            "Teeth bend, so that the edge of the next tooth's tip carries up to this share of the "
+            "load. The pressure there is not stated.",
             pair.edge_stretches,
+            100.0 * float(pair.edge_share.max()),
         )
 
 
@@ -204,6 +224,17 @@ def loaded_error(pair: StressedPair, limit: float) -> Iterator[Remark]:
         place = angle_text(float(pair.phi1[int(np.nanargmax(pair.lag))]))
         message = "The lag of the driven wheel changes much over the turn."
         yield Remark(message, place, found / ARCSEC.factor, limit=limit / ARCSEC.factor)
+
+
+@check("unloaded-root", kind=STRESS, severity="note")
+def unloaded_root(pair: StressedPair, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Note certified teeth that carry nothing at their phase.
+
+    Looks at: the teeth in contact at the phases that are certified.
+    """
+    for one in pair.certified:
+        if not one.loaded:
+            yield Remark("This tooth carries nothing at this phase: its neighbours do.", one.where)
 
 
 @check("corner-stress", kind=STRESS, severity="note")

@@ -17,6 +17,7 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import beyond_limit
+from gearcam.base.numerals import shortened
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane, divided
 from gearcam.numeric.bulges import bulge_pieces, on_arcs
 from gearcam.numeric.contour import Contour
@@ -483,8 +484,8 @@ def _on_circle(outer: BoundaryCurve, openings: Sequence[Opening], diameter: floa
         raise beyond_limit(what, _KEY, diameter, limit, far=limit)
     for one, low, high in zip(openings, most, least, strict=True):
         if diameter < high and one.kind == "BORE":
-            what = "the held circle lies within the bore"
-            raise beyond_limit(what, _KEY, diameter, high, near=high)
+            what = "the held circle does not go round the bore and its keyway"
+            raise beyond_limit(what, _KEY, diameter, high, near=shortened(high, 1.0, 5))
         if low < diameter < high:
             what = f"the held circle cuts an opening, {one.name}"
             note = "the limit is the circle that has the opening within it"

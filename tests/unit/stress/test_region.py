@@ -199,7 +199,7 @@ def test_a_held_circle_that_cannot_be_is_refused_with_its_limit() -> None:
     with pytest.raises(InfeasibleError, match="reaches the roots") as refused:
         holed(held=59.9)
     assert refused.value.limit == pytest.approx(60.0 / 1.01)
-    with pytest.raises(InfeasibleError, match="within the bore") as refused:
+    with pytest.raises(InfeasibleError, match="go round the bore") as refused:
         region("nail_machine_two_phase", 1, 30.0)
     assert refused.value.limit == pytest.approx(40.0 * 1.01)
     with pytest.raises(InfeasibleError, match="no metal around its shaft"):

@@ -250,7 +250,7 @@ def _load_faults(
         if not slides and one.slides:
             message, name = "acts on a wheel, which turns", "file" if one.file else "force_n"
             yield Fault((*key, name), message, document["load"][number][name], "torque_nm")
-        if slides and one.file and not one.slides:
+        if slides and one.column and not one.slides:
             message = f"has {one.column}, but a rack does not turn"
             yield Fault((*key, "file"), message, one.file, "a column force_n")
         if on_rack and one.formula is not None and one.read(one.formula)[0] == "phi2":

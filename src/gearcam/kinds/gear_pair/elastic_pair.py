@@ -354,6 +354,7 @@ class ElasticPair:
             phi1=float(entries.phi1[entry]),
             force=float(entries.force[here].sum()) * self.width,
             share=float(entries.share[here[0]]),
+            loaded=tooth in entries.teeth[wheel - 1, here],
             certificate=made,
             yields=None if strength is None else strength[wheel - 1],
         )

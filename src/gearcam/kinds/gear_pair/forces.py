@@ -15,6 +15,7 @@ from gearcam.base.numerals import formatted
 from gearcam.base.quantities import TORQUE
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.kinds.gear_pair.drawn import DRIVER
+from gearcam.laws.columns import demand as demand_rows
 from gearcam.laws.ratio.span import angle_text
 from gearcam.mechanics.hertz import half_width, line_pressure
 from gearcam.meshing.force_checks import LoadedPair
@@ -89,6 +90,8 @@ class PairUnderLoad:
         self.turns = result.pair.closed
         self.travel = _TURN if self.turns else float(result.turn(1)[-1])
         for number, load in enumerate(self.loads):
+            if load.file is not None:  # it may have been changed
+                demand_rows(load.problems(), f"load[{number}]")
             _demand_fit(load, number, self.travel, result, whole=self.turns)
 
     @cached_property

@@ -74,7 +74,7 @@ class StressSpec(ShortRepr):
         ge=1,
         le=2,
         example=1,
-        doc="wheel whose stress is certified; both by default",
+        doc="wheel whose stress is certified; both by default, with teeth wheel 1",
     )
     teeth: tuple[int, ...] | None = param(
         COUNT,

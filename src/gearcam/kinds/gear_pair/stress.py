@@ -11,7 +11,7 @@ import numpy as np
 
 from gearcam.base.errors import DesignError, InfeasibleError, MissingExtraError, Problem
 from gearcam.base.facts import Fact, Tree, extent
-from gearcam.base.findings import run_checks
+from gearcam.base.findings import limit_of, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import ARCSEC
 from gearcam.export.table import table_bytes
@@ -229,8 +229,8 @@ def _stressed(
     material = pair.result.design.material
     carries = entries.force > 0.0
     pressure = line_pressure(entries.force, entries.curvature, material)
-    on_edge = np.zeros(len(entries.phi1), dtype=bool)
-    on_edge[entries.step[entries.edge & carries]] = True
+    edge_share = np.zeros(len(entries.phi1))
+    np.add.at(edge_share, entries.step, np.where(entries.edge, entries.share, 0.0))
     bores = (pair.result.design.blank.wheel(number).bore_diameter for number in WHEELS)
     unheld = not (pair.spec.held_diameter or all(bores))
     circles = [formatted(one) for one in map(_held, pair.regions) if one is not None]
@@ -242,7 +242,7 @@ def _stressed(
         lag=entries.lag,
         step=entries.step,
         pressure=np.where(carries & ~entries.edge, pressure, np.nan),
-        on_edge=on_edge,
+        edge_share=edge_share,
         certified=certified,
         yields=material.weakest,
         held=f"circles of {' and '.join(circles)} mm" if unheld and circles else "",
@@ -309,7 +309,7 @@ def _stiffness(pair: ElasticPair, entries: Entries) -> dict[str, Any]:
 
 def _facts(pair: ElasticPair, entries: Entries, stressed: StressedPair, *, complete: bool) -> Tree:
     """Return the facts of the study."""
-    on_rack = pair.result.pair.on_rack
+    on_rack, design = pair.result.pair.on_rack, pair.result.design
     lag, unit = (entries.lag, "mm") if on_rack else (entries.lag / ARCSEC.factor, "arcsec")
     per = "n_mm" if on_rack else "nmm_rad"
     stiffness = pair.width * entries.stiffness
@@ -317,11 +317,20 @@ def _facts(pair: ElasticPair, entries: Entries, stressed: StressedPair, *, compl
     twice = entries.share[carrying & (entries.share >= 0.5)]
     low, high = (formatted(float(one), 4) for one in (lag.min(), lag.max()))
     held = [one for one in map(_held, pair.regions) if one is not None]
+    circles = f"circles of {' and '.join(map(formatted, held))} mm" if held else "the bores"
+    (first, one), (second, other) = design.material.elasticity
+    material = f"E {formatted(first)} and {formatted(second)} MPa, "
+    material += f"nu {formatted(one)} and {formatted(other)}, plane {pair.spec.plane}"
     return {
+        "held": Fact(circles, "wheels are held on", shown=True),
+        "material": Fact(material, "elasticity of the wheels", shown=True),
+        "alone": Fact("yes", "each pair of teeth has the whole load", shown=True)
+        if pair.spec.alone
+        else None,
         "plane": pair.spec.plane,
         "phases": len(np.unique(entries.phi1)),
         "held_diameter_mm": held or None,
-        "gears": [_of_wheel(entries, stressed, wheel) for wheel in WHEELS],
+        "gears": [_of_wheel(pair, entries, stressed, wheel) for wheel in WHEELS],
         f"lag_{unit}": {
             **extent(float(lag.min()), float(lag.max())),
             "peak_to_peak": Fact(
@@ -357,22 +366,23 @@ def _held(region: Region) -> float | None:
     return None
 
 
-def _of_wheel(entries: Entries, stressed: StressedPair, wheel: int) -> Tree:
+def _of_wheel(pair: ElasticPair, entries: Entries, stressed: StressedPair, wheel: int) -> Tree:
     """Return the facts of a wheel: the most of the cycle, and what is certified."""
     tension, compression = entries.roots[wheel - 1]
     found = [one for one in stressed.certified if one.wheel == wheel]
-    first = max(found, key=lambda one: one.certificate.von_mises, default=None)
+    first = max(found, key=lambda one: one.largest, default=None)
+    least = limit_of(STRESS, "root-stress", pair.result.design.limits)
     return {
         "screen": {
             "tension_mpa": float(tension.max()),
             "compression_mpa": float(compression.min()),
         },
-        "root": None if first is None else _of_root(first),
-        "roots": [_of_root(one) for one in found] if len(found) > 1 else None,
+        "root": None if first is None else _of_root(first, least),
+        "roots": [_of_root(one, least) for one in found] if len(found) > 1 else None,
     }
 
 
-def _of_root(one: CertifiedRoot) -> Tree:
+def _of_root(one: CertifiedRoot, least: float) -> Tree:
     """Return the facts of a certified stress."""
     made = one.certificate
     error = f"within {formatted(100.0 * made.error, 2)} %, {angle_text(one.phi1)}"
@@ -392,7 +402,8 @@ def _of_root(one: CertifiedRoot) -> Tree:
         "phi1_deg": math.degrees(one.phi1),
         "force_n": one.force,
         "share": one.share,
-        "safety": one.safety,
+        "safety": one.safety
+        and Fact(one.safety, f"safety of the {name}", at_least=least, unit="", shown=True),
         "unknowns": made.unknowns,
         "loops": made.loops,
     }

@@ -165,6 +165,11 @@ def test_files_that_are_refused(case: tuple[tuple[str, ...], str], tmp_path: Pat
         study(ELLIPSE, [24, 24], load=[{"file": rows_of(tmp_path, *rows)}])
 
 
+def test_a_file_that_is_not_there_is_named() -> None:
+    with pytest.raises(DesignError, match="there is no such file"):
+        study(ELLIPSE, [24, 24], load=[{"file": "nowhere.csv"}])
+
+
 def test_a_mechanism_hands_over_its_torque(tmp_path: Path) -> None:
     """Without friction the pair's driver needs what the machine's does."""
     machine = built(PROFILES / "nail_machine_slide.toml").study("torque")
