@@ -258,4 +258,4 @@ def held(pair: StressedPair, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     Looks at: bores, and held_diameter_mm.
     """
     if pair.held:
-        yield Remark(f"A wheel has no bore: it is held on {pair.held}. The lag depends on it.")
+        yield Remark(f"A wheel has no bore: they are held on {pair.held}. The lag depends on it.")

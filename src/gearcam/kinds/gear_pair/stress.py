@@ -29,6 +29,7 @@ from gearcam.results.study import StudyResult
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from gearcam.gears.pair import Gear
     from gearcam.kinds.gear_pair.result import GearPairResult
     from gearcam.numeric.arrays import Array, Ints
     from gearcam.pictures.scenes import ColouredCurve
@@ -231,9 +232,8 @@ def _stressed(
     pressure = line_pressure(entries.force, entries.curvature, material)
     edge_share = np.zeros(len(entries.phi1))
     np.add.at(edge_share, entries.step, np.where(entries.edge, entries.share, 0.0))
-    bores = (pair.result.design.blank.wheel(number).bore_diameter for number in WHEELS)
-    unheld = not (pair.spec.held_diameter or all(bores))
-    circles = [formatted(one) for one in map(_held, pair.regions) if one is not None]
+    blanks = (pair.result.design.blank.wheel(gear.wheel) for gear in _on_shafts(pair))
+    unheld = not (pair.spec.held_diameter or all(one.bore_diameter for one in blanks))
     loaded = np.abs(pair.under.without_friction(even)) > 0.0
     unstated = loaded & ~np.isin(even, entries.phi1)
     return StressedPair(
@@ -245,7 +245,7 @@ def _stressed(
         edge_share=edge_share,
         certified=certified,
         yields=material.weakest,
-        held=f"circles of {' and '.join(circles)} mm" if unheld and circles else "",
+        held=_held_on(pair) if unheld else "",
     )
 
 
@@ -317,12 +317,11 @@ def _facts(pair: ElasticPair, entries: Entries, stressed: StressedPair, *, compl
     twice = entries.share[carrying & (entries.share >= 0.5)]
     low, high = (formatted(float(one), 4) for one in (lag.min(), lag.max()))
     held = [one for one in map(_held, pair.regions) if one is not None]
-    circles = f"circles of {' and '.join(map(formatted, held))} mm" if held else "the bores"
     (first, one), (second, other) = design.material.elasticity
     material = f"E {formatted(first)} and {formatted(second)} MPa, "
     material += f"nu {formatted(one)} and {formatted(other)}, plane {pair.spec.plane}"
     return {
-        "held": Fact(circles, "wheels are held on", shown=True),
+        "held": Fact(_held_on(pair), "wheels are held on", shown=True),
         "material": Fact(material, "elasticity of the wheels", shown=True),
         "alone": Fact("yes", "each pair of teeth has the whole load", shown=True)
         if pair.spec.alone
@@ -364,6 +363,22 @@ def _held(region: Region) -> float | None:
         if hole.held(hole.places).all() and np.ptp(np.abs(points)) < 1e-6 * np.abs(points[0]):
             return 2.0 * float(np.abs(points[0]))
     return None
+
+
+def _on_shafts(pair: ElasticPair) -> list[Gear]:
+    """Return the wheels that a shaft holds: neither a ring nor a rack."""
+    gears = pair.result.gears
+    return [gears[0]] if gears[1].ring or pair.result.pair.on_rack else [*gears]
+
+
+def _held_on(pair: ElasticPair) -> str:
+    """Return on what the wheels are held, in words."""
+    inside = "the outside of the ring" if pair.result.gears[1].ring else "the back of the rack"
+    words = ["the bore", "the bore" if len(_on_shafts(pair)) == 2 else inside]
+    for number, diameter in enumerate(map(_held, pair.regions)):
+        if diameter is not None:
+            words[number] = f"a circle of {formatted(diameter)} mm"
+    return " and ".join(words)
 
 
 def _of_wheel(pair: ElasticPair, entries: Entries, stressed: StressedPair, wheel: int) -> Tree:
