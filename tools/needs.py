@@ -25,7 +25,7 @@ END: Final = "<!-- end of what each output needs -->"
 
 PACKAGES: Final = (
     "numpy", "shapely", "ezdxf", "manifold3d", "trimesh", "networkx", "lxml", "jinja2", "rich",
-    "OCP", "matplotlib", "optuna", "distributed", "pyarrow",
+    "OCP", "matplotlib", "optuna", "distributed", "pyarrow", "skfem",
 )  # fmt: skip
 """Packages that the program may import."""
 
