@@ -30,8 +30,10 @@ def of_loads() -> list[Result]:
     under, pair = PairUnderLoad(result), ElasticPair(result)
     forces = measure("forces of 360 phases", lambda: under.loaded(PHASES), 15)
     entries = pair.entries(PHASES)
-    entry = int(entries.worst[0].max(axis=1).argmax())
-    tooth = measure("a certified tooth", lambda: pair.certified(entries, 1, 1, entry), 7)
+    worst = entries.worst[0]
+    entry, column = np.unravel_index(int(worst.argmax()), worst.shape)
+    number = int(entries.numbers[0][column])
+    tooth = measure("a tooth", lambda: pair.certified(entries, 1, number, int(entry)), 7)
     cycle = measure("360 phases", lambda: ElasticPair(result).entries(PHASES), 3)
     return [
         _target("(zf) Forces of a pair at 360 phases", 0.1, forces),
