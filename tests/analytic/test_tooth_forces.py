@@ -162,7 +162,7 @@ def test_friction_locks_a_pair() -> None:
 
 
 def test_negative_controls(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A turned normal, or friction the wrong way, is told by the values and by the powers."""
+    """The values and the powers show a turned normal and friction of the wrong sign."""
     load, radius, rows = NON_CIRCULAR["ellipse"]
     phi1 = np.radians([row[0] for row in rows])
     right = np.array([row[-1] for row in rows])

@@ -129,7 +129,8 @@ class WheelLoadSpec(FromFile, PlacedLoad):
         if self.rows is None:
             return np.empty(0), np.empty(0), []
         names = ("phi1_deg", self.column or _COLUMNS[self.on][-1])
-        (angles, values), lines = (lambda read: (read[0].T, read[1]))(self.rows.columns(names))
+        columns, lines = self.rows.columns(names)
+        angles, values = columns.T
         return np.radians(angles), values, lines
 
     @property

@@ -10,6 +10,8 @@ import math
 from collections.abc import Iterator
 from typing import Protocol
 
+import numpy as np
+
 from gearcam.base.findings import Remark, Severity, check
 from gearcam.base.numerals import formatted
 from gearcam.gears.contact import DRIVE, FlankPairs
@@ -17,6 +19,7 @@ from gearcam.gears.subject import CONTACT_RATIO
 from gearcam.gears.subject import KIND as PAIR_KIND
 from gearcam.meshing.edges import NonContact, non_contact
 from gearcam.meshing.settings import KIND
+from gearcam.numeric.arrays import Array, Mask
 
 _SHOWN = 3
 """Largest number of driver-angle ranges that a finding lists."""
@@ -41,6 +44,21 @@ def ranges_text(ranges: list[tuple[float, float]]) -> str:
     ]
     more = f" and {len(ranges) - _SHOWN} more" if len(ranges) > _SHOWN else ""
     return f"phi1 = {', '.join(named)} deg{more}"
+
+
+def rows_text(phi1: Array, mask: Mask) -> str:
+    """Return as text the ranges of driver angles where a mask holds.
+
+    Parameters
+    ----------
+    phi1 : (n,) array, rad
+        Driver angles, ascending.
+    mask : (n,) bool array
+        Where it holds; neighbouring rows are one range.
+    """
+    rows = np.flatnonzero(mask)
+    groups = np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
+    return ranges_text([(float(phi1[one[0]]), float(phi1[one[-1]])) for one in groups])
 
 
 def arcs_text(found: list[NonContact]) -> str:

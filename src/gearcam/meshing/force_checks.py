@@ -13,7 +13,7 @@ from gearcam.base.findings import Remark, check
 from gearcam.base.quantities import MPA, TORQUE, Param
 from gearcam.laws.ratio.span import angle_text
 from gearcam.mechanics.hertz import FIRST_YIELD
-from gearcam.meshing.drive_checks import ranges_text
+from gearcam.meshing.drive_checks import rows_text
 from gearcam.meshing.forces import ToothForces
 from gearcam.meshing.settings import FORCES, STRESS
 from gearcam.numeric.arrays import Array, Mask
@@ -78,10 +78,7 @@ class LoadedPair(ShortRepr):
 
     def stretches(self, mask: Mask) -> str:
         """Return in words where a mask holds."""
-        rows = np.flatnonzero(mask)
-        groups = np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
-        phi1 = self.forces.phi1
-        return ranges_text([(float(phi1[one[0]]), float(phi1[one[-1]])) for one in groups])
+        return rows_text(self.forces.phi1, mask)
 
 
 @check("self-locking", kind=FORCES, relation="at least", severity="error")

@@ -14,7 +14,7 @@ from gearcam.base.numerals import formatted
 from gearcam.base.quantities import ARCSEC, NUMBER, Param
 from gearcam.laws.ratio.span import angle_text
 from gearcam.meshing import force_checks as force_checks  # one check is of both studies
-from gearcam.meshing.drive_checks import ranges_text
+from gearcam.meshing.drive_checks import rows_text
 from gearcam.meshing.settings import STRESS
 from gearcam.numeric.arrays import Array, Ints
 
@@ -122,9 +122,7 @@ class StressedPair(ShortRepr):
     @property
     def edge_stretches(self) -> str:
         """Where the ends of flanks carry, in words."""
-        rows = np.flatnonzero(self.edge_share)
-        groups = np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
-        return ranges_text([(float(self.phi1[x[0]]), float(self.phi1[x[-1]])) for x in groups])
+        return rows_text(self.phi1, self.edge_share != 0.0)
 
 
 @check(

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from gearcam.base.display import ShortRepr
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.stress.fillet import BESIDE
+from gearcam.stress.hertz_load import past
 from gearcam.stress.influence import Influence
 from gearcam.stress.sharing import ContactWidths, Sharing, share
 
@@ -263,9 +264,8 @@ def _root_stress(
     # beside a load the pressure itself stresses the edge
     reach = touching.padded(BESIDE[0] * half_width + BESIDE[1] * wheel.module, count)
     places = touching.padded(s, count)
-    half = 0.5 * wheel.length
     for place, near in zip(places.T, reach.T, strict=True):
-        away = np.abs((wheel.root_s[:, None] - place + half) % wheel.length - half)
+        away = np.abs(past(wheel.root_s[:, None], place, wheel.length))
         stress[away < near] = 0.0
     first = np.flatnonzero(np.diff(wheel.root_tooth, prepend=-1))
     rows = wheel.root_tooth[first]

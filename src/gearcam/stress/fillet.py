@@ -134,7 +134,7 @@ def mean_stress(body: ElasticBody, curve: int, s: float, within: float) -> Plane
         The mean stress is the sum of the products, of vectors, with displacements of the nodes.
     """
     nodes, places, half = _edges(body, curve)
-    away = np.abs(past(body.mesh.region.curves[curve], places, s))
+    away = np.abs(past(places, s, body.mesh.region.curves[curve].length))
     weights = np.where(away <= max(within, float(away.min())), half, 0.0)
     slopes = edge_slopes(_GAUSS)
     along = body.mesh.nodes[nodes] @ slopes.T
@@ -202,7 +202,7 @@ def in_fillets(edge: EdgeStress, module: float) -> Mask:
         ends = np.append(stretches[:, 1], -np.inf)  # that of number -1, before the first
         made |= s + turn <= ends[number]
     for corner in sharp_corners(curve):
-        made &= np.abs(past(curve, s, corner)) > _BEYOND * module
+        made &= np.abs(past(s, corner, curve.length)) > _BEYOND * module
     return made
 
 
@@ -225,7 +225,7 @@ def looked_at(edge: EdgeStress, module: float, loads: Sequence[FlankLoad]) -> Ma
     looked = in_fillets(edge, module)
     for load in loads:
         beside = BESIDE[0] * load.half_width + BESIDE[1] * module
-        looked &= np.abs(past(edge.curve, edge.s, load.place)) > beside
+        looked &= np.abs(past(edge.s, load.place, edge.curve.length)) > beside
     return looked
 
 
@@ -257,7 +257,7 @@ def peak(edge: EdgeStress, looked: Mask, sign: int) -> StressPeak:
     near = near[joined]
     s, stress, misfit = float(edge.s[top]), float(edge.stress[top]), 0.0
     if len(near) >= _LEAST:
-        away = past(edge.curve, edge.s[near], s)
+        away = past(edge.s[near], s, edge.curve.length)
         scale = float(np.ptp(away))
         powers = (away / scale)[:, None] ** np.arange(3)
         level, slope, bend = np.linalg.lstsq(powers, edge.stress[near], rcond=None)[0]

@@ -162,7 +162,7 @@ def _on_flank(
     s = curve.nearest(np.array([point]))
     reach += 2.0 * float(np.abs(curve.at(s)[0] - point)[0])
     # within reach of a corner the point may belong to either side of it
-    near = corners[np.abs(past(curve, corners, float(s[0]))) <= reach]
+    near = corners[np.abs(past(corners, float(s[0]), curve.length)) <= reach]
     places = np.concatenate([s, near, near])
     inside = places + SIDE * length * np.repeat([0.0, -1.0, 1.0], [1, len(near), len(near)])
     off = np.abs(np.angle(1j * curve.at(inside)[1] / direction))
@@ -178,10 +178,18 @@ def _on_flank(
     return float(places[best]), float(low), float(high)
 
 
-def past(curve: BoundaryCurve, s: Array, place: float) -> Array:
-    """Return by how much `s` is past a `place` of a closed `curve`, mm, the shorter way round."""
-    half = 0.5 * curve.length
-    made: Array = (s - place + half) % curve.length - half
+def past(s: Array, place: float | Array, length: float) -> Array:
+    """Return by how much `s` is past a `place` of a closed curve, mm, the shorter way round.
+
+    Parameters
+    ----------
+    s, place : float, mm
+        Arc lengths.
+    length : float, mm
+        Length of the curve.
+    """
+    half = 0.5 * length
+    made: Array = (s - place + half) % length - half
     return made
 
 

@@ -18,7 +18,7 @@ from gearcam.base.display import ShortRepr
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.stress.elastic import CurvedMesh, ElasticBody, PlaneModuli
 from gearcam.stress.fillet import edge_stress, in_fillets
-from gearcam.stress.hertz_load import FlankLoad, nodal_forces
+from gearcam.stress.hertz_load import FlankLoad, nodal_forces, past
 from gearcam.stress.mesh import graded
 from gearcam.stress.region import Region
 from gearcam.stress.size_field import LARGEST, outline_sizes
@@ -97,8 +97,7 @@ class Influence(ShortRepr):
         low, high = self.ends[row].T
         s = self.body.mesh.region.teeth.nearest(points)
         middle = 0.5 * (low + high)
-        s = middle + (s - middle + 0.5 * self.length) % self.length - 0.5 * self.length
-        return np.clip(s, low, high)
+        return np.clip(middle + past(s, middle, self.length), low, high)
 
     def shares(self, row: Ints, s: Array) -> tuple[Ints, Array]:
         """Return between which places values are interpolated.
@@ -154,8 +153,7 @@ def loaded_flanks(region: Region, gear: Gear, sigma: int, numbers: Ints) -> Arra
     for reach in (flanks.lowest[row], flanks.highest[row]):
         frames = toothing.frames(toothing.track.angle(flanks.sf[row] - sigma * reach))
         ends.append(curve.nearest(toothing.flank_points(frames, flanks.sf[row], sigma)))
-    half = 0.5 * curve.length
-    way = (ends[1] - ends[0] + half) % curve.length - half
+    way = past(ends[1], ends[0], curve.length)
     first = np.where(way > 0.0, ends[0], ends[0] + way)
     return np.column_stack([first, first + np.abs(way)])
 
@@ -239,9 +237,9 @@ def _roots(body: ElasticBody, module: float, spans: Array) -> tuple[Array, Ints,
     edge = edge_stress(body, np.zeros(len(body.mesh.nodes), dtype=np.complex128), region.toothed)
     at = np.flatnonzero(in_fillets(edge, module))
     length = region.teeth.length
-    past = (edge.s[at, None] - spans[:, 0]) % length
-    tooth = np.argmin(past, axis=1)  # that whose span begins last before it
-    inside = past[np.arange(len(at)), tooth] < spans[tooth, 1] - spans[tooth, 0]
+    beyond = (edge.s[at, None] - spans[:, 0]) % length
+    tooth = np.argmin(beyond, axis=1)  # that whose span begins last before it
+    inside = beyond[np.arange(len(at)), tooth] < spans[tooth, 1] - spans[tooth, 0]
     at, tooth = at[inside], tooth[inside]
     order = np.lexsort((edge.s[at], tooth))
     return edge.s[at[order]], at[order], tooth[order]

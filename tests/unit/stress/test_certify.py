@@ -1,4 +1,4 @@
-"""Certified stresses: what is refused, what is told, where meshes are refined."""
+"""Certified stresses: refusals, findings, and where meshes are refined."""
 
 from __future__ import annotations
 

@@ -38,10 +38,9 @@ from gearcam.kinds.cam.tables import (
     CamBlank,
     CamOutputSpec,
     FollowSpec,
-    ForcesSpec,
     PrecisionSpec,
 )
-from gearcam.kinds.shared import AccuracySpec, GoalSpec
+from gearcam.kinds.shared import AccuracySpec, ForcesSpec, GoalSpec
 from gearcam.mechanics.drive import DriveSpec
 from gearcam.mechanics.friction import FrictionSpec
 from gearcam.mechanics.load import LoadSpec

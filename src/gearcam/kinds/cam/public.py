@@ -18,10 +18,9 @@ from gearcam.kinds.cam.tables import (
     CamBlank,
     CamOutputSpec,
     FollowSpec,
-    ForcesSpec,
     PrecisionSpec,
 )
-from gearcam.kinds.shared import AccuracySpec, GoalSpec
+from gearcam.kinds.shared import AccuracySpec, ForcesSpec, GoalSpec
 from gearcam.laws.motion_formula import MotionFormula
 from gearcam.laws.motion_table import MotionTable
 from gearcam.laws.phases_of_lift import DwellPhase, ReturnPhase, RisePhase, SegmentPhase

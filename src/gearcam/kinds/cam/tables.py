@@ -230,27 +230,6 @@ SIZES: Final[Mapping[str, Param]] = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class ForcesSpec(ShortRepr):
-    """Places at which the study ``forces`` computes the forces.
-
-    Examples
-    --------
-    >>> import gearcam as gc
-    >>> gc.ForcesSpec(steps=360)
-    ForcesSpec(steps=360)
-    """
-
-    steps: int = param(
-        COUNT,
-        default=720,
-        ge=12,
-        le=100000,
-        doc="number of even steps of the turn or travel; both sides of knots and of changes of "
-        "what carries, and places of extremes, are added",
-    )
-
-
-@dataclass(frozen=True, kw_only=True)
 class CamOutputSpec(OutputSpec):
     """Which files and studies of a cam are written, and how exact (see `OutputSpec`).
 

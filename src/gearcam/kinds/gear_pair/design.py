@@ -18,8 +18,8 @@ from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, pose_param
 from gearcam.designs.table import table_of
 from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.gears.subject import KIND as TEETH
-from gearcam.kinds.gear_pair.load_settings import PairForcesSpec, StressSpec
-from gearcam.kinds.shared import ACCURACY, AccuracySpec, GoalSpec
+from gearcam.kinds.gear_pair.load_settings import StressSpec
+from gearcam.kinds.shared import ACCURACY, AccuracySpec, ForcesSpec, GoalSpec
 from gearcam.laws.ratio import LAWS
 from gearcam.mechanics.drive import DriveSpec
 from gearcam.mechanics.friction import WheelFrictionSpec
@@ -147,7 +147,7 @@ class GearPairDesign(Design):
         Coefficients of friction, bearings.
     material : MaterialSpec
         Elasticity and strength of both wheels.
-    forces : PairForcesSpec
+    forces : ForcesSpec
         Phases of the study of forces.
     stress : StressSpec
         Settings of the study of stress.
@@ -179,7 +179,7 @@ class GearPairDesign(Design):
     load: tuple[WheelLoadSpec, ...] = ()
     friction: WheelFrictionSpec = field(default_factory=WheelFrictionSpec)
     material: MaterialSpec = field(default_factory=MaterialSpec)
-    forces: PairForcesSpec = field(default_factory=PairForcesSpec)
+    forces: ForcesSpec = field(default_factory=ForcesSpec)
     stress: StressSpec = field(default_factory=StressSpec)
     accuracy: AccuracySpec = field(default_factory=AccuracySpec)
     goal: GoalSpec = field(default_factory=GoalSpec)

@@ -1,4 +1,4 @@
-"""Settings of the studies of a pair under load: forces, and stress."""
+"""Settings of the study of stress of a pair."""
 
 from __future__ import annotations
 
@@ -7,27 +7,6 @@ from dataclasses import dataclass
 from gearcam.base.display import ShortRepr
 from gearcam.base.quantities import ANGLE, COUNT, LENGTH, LONGEST, TEXT, param
 from gearcam.base.rules import distinct
-
-
-@dataclass(frozen=True, kw_only=True)
-class PairForcesSpec(ShortRepr):
-    """Phases of the study of forces.
-
-    Examples
-    --------
-    >>> import gearcam as gc
-    >>> gc.PairForcesSpec(steps=360)
-    PairForcesSpec(steps=360)
-    """
-
-    steps: int = param(
-        COUNT,
-        default=720,
-        ge=12,
-        le=100000,
-        doc="number of even steps of the turn or travel; both sides of knots and of changes of "
-        "what carries, and places of extremes, are added",
-    )
 
 
 @dataclass(frozen=True, kw_only=True)

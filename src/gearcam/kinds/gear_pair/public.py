@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
-from gearcam.kinds.gear_pair.load_settings import PairForcesSpec, StressSpec
+from gearcam.kinds.gear_pair.load_settings import StressSpec
 from gearcam.kinds.gear_pair.result import GearPairResult
-from gearcam.kinds.shared import AccuracySpec, GoalSpec
+from gearcam.kinds.shared import AccuracySpec, ForcesSpec, GoalSpec
 from gearcam.mechanics.drive import DriveSpec
 from gearcam.mechanics.friction import WheelFrictionSpec
 from gearcam.mechanics.material import MaterialSpec
@@ -15,8 +15,8 @@ from gearcam.meshing.settings import ErrorsSpec, MeshingSpec
 from gearcam.parts.blank import Blank
 
 __all__ = [
-    "AccuracySpec", "Blank", "DriveSpec", "ErrorsSpec", "GearPairDesign", "GearPairResult",
-    "GoalSpec", "MaterialSpec", "MeshingSpec", "PairForcesSpec", "PairOutputSpec", "PairSpec",
+    "AccuracySpec", "Blank", "DriveSpec", "ErrorsSpec", "ForcesSpec", "GearPairDesign",
+    "GearPairResult", "GoalSpec", "MaterialSpec", "MeshingSpec", "PairOutputSpec", "PairSpec",
     "Rack", "RingSpec", "StepsSpec", "StressSpec", "WheelFrictionSpec", "WheelLoadSpec",
 ]  # fmt: skip
 

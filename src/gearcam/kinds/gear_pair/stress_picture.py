@@ -10,6 +10,7 @@ from gearcam.base.numerals import formatted
 from gearcam.pictures.stress_field import StressField
 from gearcam.stress.certify import Certificate
 from gearcam.stress.fillet import edge_stress
+from gearcam.stress.hertz_load import past
 
 _SEEN: Final = 3.4
 """Distance from the middle of the picture up to which it shows the wheel, in modules."""
@@ -57,8 +58,7 @@ def stress_field(certificate: Certificate, module: float) -> StressField:
     seen = np.abs(chains - middle).max(axis=1) < _SEEN * module
     # beside a load the edge is stressed by the pressure itself
     for one in certificate.loads:
-        half = 0.5 * curve.length
-        away = np.abs((edge.s - one.place + half) % curve.length - half)
+        away = np.abs(past(edge.s, one.place, curve.length))
         seen &= away > one.half_width
     peaks = (("tension", certificate.tension), ("compression", certificate.compression))
     inside = np.abs(at - middle) < _SEEN * module
