@@ -11,11 +11,11 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.base.findings import Remark, check
 from gearcam.base.numerals import formatted
-from gearcam.base.quantities import MPA, TORQUE, Param
+from gearcam.base.quantities import TORQUE, Param
 from gearcam.cams.carriers import DriverAxis
 from gearcam.cams.spec import FORCES
 from gearcam.cams.statics import Statics
-from gearcam.mechanics.hertz import FIRST_YIELD
+from gearcam.mechanics.hertz import CONTACT_PRESSURE
 from gearcam.numeric.arrays import Array, Mask
 
 
@@ -40,8 +40,8 @@ class Loaded(ShortRepr):
         Contact pressure, infinite where an edge carries.
     pointed : bool
         Whether the edge is that of the follower.
-    yields : float or None, MPa
-        The lower yield stress.
+    yielding : float, MPa
+        Contact pressure at which either part first yields; infinite if unknown.
     torque : (n,) array
         Of the driver, in N m; of a driver that slides nan.
     way : (n,) array, optional
@@ -58,7 +58,7 @@ class Loaded(ShortRepr):
     driver: DriverAxis
     statics: Statics
     pressure: Array
-    yields: float | None
+    yielding: float
     torque: Array
     pointed: bool = False
     way: Array | None = None
@@ -131,17 +131,10 @@ def lift_off(loaded: Loaded, limit: float) -> Iterator[Remark]:  # noqa: ARG001
         yield Remark(message, loaded.loose)
 
 
-_PRESSURE: Final = (
-    "contact_pressure",
-    Param(MPA, ge=0, le=1e5, doc="largest contact pressure; 0: 1.79 times the yield stress"),
-    0.0,
-)
-
-
 @check(
     "contact-pressure",
     kind=FORCES,
-    limit=_PRESSURE,
+    limit=CONTACT_PRESSURE,
     relation="at most",
     severity=("warning", "note"),
     unit="MPa",
@@ -153,9 +146,9 @@ def contact_pressure(loaded: Loaded, limit: float) -> Iterator[Remark]:
     if there is no limit.
 
     Looks at: Hertz pressure between profile and follower, over the turn; without a limit against
-    1.79 times the lower yield stress, where a line contact first yields, if one is given.
+    that at which either part first yields, if a yield stress is given.
     """
-    most = limit or FIRST_YIELD * (loaded.yields or np.inf)
+    most = limit or loaded.yielding
     if loaded.on_edge.any():
         beyond = "" if np.isinf(most) else f", beyond the limit of {formatted(most)} MPa"
         why = " where the follower rides on a corner of the profile"

@@ -207,6 +207,23 @@ class FlankPairs(ShortRepr):
         driver, driven = self.wheels
         return driver.real(j) & driven.real(j)
 
+    def frames(self, phi1: Array, place: Array) -> tuple[Plane, Plane]:
+        """Return the wheels' own frames.
+
+        Parameters
+        ----------
+        phi1, place : (k,) arrays
+            Driver angles, rad, and the turn of the driven wheel (see `Guide.pose`).
+
+        Returns
+        -------
+        origins, turns : (2, k) complex arrays, mm and 1
+            A point p has the coordinates ``(p - origins)*turns`` in those of each wheel.
+        """
+        pose = self.guide.pose(place)
+        origins = np.stack([np.zeros_like(pose.rotation), self.distance + pose.shift])
+        return origins, np.stack([np.exp(1j * phi1), np.conj(pose.rotation)])
+
     def separation(self, j: Ints) -> Array:
         """Return the separation sf2 - sf1 of the flanks of pairs `j`, mm."""
         driver, driven = self.wheels

@@ -1,15 +1,59 @@
-"""Pressure of a line contact, by Hertz."""
+"""Pressure of a line contact, by Hertz, and that at which it yields."""
 
 from __future__ import annotations
 
+import math
+from typing import Final
+
 import numpy as np
 
+from gearcam.base.quantities import MPA, Param
 from gearcam.mechanics.material import MaterialSpec
 from gearcam.numeric.arrays import Array
 
-FIRST_YIELD = 1.79
-"""Pressure over the yield stress at which a line contact first yields, below its surface: the
-largest equivalent stress is 0.5575 times the pressure (Poisson's ratio 0.3)."""
+_DEPTHS: Final = np.linspace(0.0, 2.0, 4001)
+"""Depths below a contact, in half-widths: beyond, the stress only falls."""
+
+CONTACT_PRESSURE: Final = (
+    "contact_pressure",
+    Param(MPA, ge=0, le=1e5, doc="largest contact pressure; 0: that at which the contact yields"),
+    0.0,
+)
+"""The limit of a study of forces; without it see `yield_pressure`."""
+
+
+def first_yield(poisson: float) -> float:
+    """Return the pressure at which a line contact first yields, over the yield stress.
+
+    The largest von Mises stress is in the middle of the contact: below the surface, or on it if
+    Poisson's ratio is below 0.19. For a ratio of 0.3 it is 0.5575 times the pressure.
+
+    Parameters
+    ----------
+    poisson : float
+        Poisson's ratio.
+
+    Returns
+    -------
+    float
+
+    Notes
+    -----
+    Johnson, Contact Mechanics, 1985, eq. (4.46), in plane strain.
+    """
+    z, root = _DEPTHS, np.sqrt(1.0 + _DEPTHS**2)
+    along, down = 2.0 * z - (1.0 + 2.0 * z * z) / root, -1.0 / root
+    across = poisson * (along + down)
+    squares = (along - down) ** 2 + (down - across) ** 2 + (across - along) ** 2
+    return 1.0 / math.sqrt(0.5 * float(squares.max()))
+
+
+def yield_pressure(material: MaterialSpec) -> float:
+    """Return the pressure at which either part first yields, MPa; infinite if none is given."""
+    if material.yield_strength is None:
+        return math.inf
+    ratios = [first_yield(poisson) for _, poisson in material.elasticity]
+    return min(k * own for k, own in zip(ratios, material.yield_strength, strict=True))
 
 
 def line_pressure(force: Array, curvature: Array, material: MaterialSpec) -> Array:

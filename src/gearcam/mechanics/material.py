@@ -78,8 +78,3 @@ class MaterialSpec(ShortRepr):
     def contact_modulus(self) -> float:
         """``1/((1 - nu1^2)/E1 + (1 - nu2^2)/E2)``, MPa."""
         return 1.0 / sum((1.0 - poisson**2) / young for young, poisson in self.elasticity)
-
-    @property
-    def weakest(self) -> float | None:
-        """The lower yield stress, MPa; None if none is given."""
-        return None if self.yield_strength is None else min(self.yield_strength)

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gearcam.base.display import ShortRepr
 from gearcam.gears.contact import FlankPairs, touch
 from gearcam.gears.track import WHEELS, Wheel
 from gearcam.meshing.contact import Contacts, outermost
@@ -29,7 +30,7 @@ _TIP = 1
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class EdgeGaps:
+class EdgeGaps(ShortRepr):
     """Pairs whose edges stand before the mate's flanks, one entry each, by phase, then by pair.
 
     Parameters

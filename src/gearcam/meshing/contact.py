@@ -5,7 +5,8 @@ For wheels as designed or as mounted (see `gearcam.gears.contact`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -67,6 +68,16 @@ class Contacts:
     specific: Array
     curvature: Array
     lever: Array
+
+    def take(self, index: Ints | Mask) -> Contacts:
+        """Return some of the points of contact."""
+        return Contacts(**{one.name: getattr(self, one.name)[..., index] for one in fields(self)})
+
+    @staticmethod
+    def joined(found: Sequence[Contacts]) -> Contacts:
+        """Return the points of contact of all `found`, one after the other."""
+        values = {one.name: [getattr(each, one.name) for each in found] for one in fields(Contacts)}
+        return Contacts(**{name: np.concatenate(each, axis=-1) for name, each in values.items()})
 
 
 def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:

@@ -10,9 +10,9 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.findings import Remark, check
-from gearcam.base.quantities import MPA, TORQUE, Param
+from gearcam.base.quantities import TORQUE, Param
 from gearcam.laws.ratio.span import angle_text
-from gearcam.mechanics.hertz import FIRST_YIELD
+from gearcam.mechanics.hertz import CONTACT_PRESSURE
 from gearcam.meshing.drive_checks import rows_text
 from gearcam.meshing.forces import ToothForces
 from gearcam.meshing.settings import FORCES, STRESS
@@ -28,8 +28,8 @@ class Pressed(Protocol):
         ...
 
     @property
-    def yields(self) -> float | None:
-        """The lower yield stress, MPa."""
+    def yielding(self) -> float:
+        """Pressure at which either wheel first yields, MPa; infinite if unknown."""
         ...
 
     @property
@@ -54,14 +54,14 @@ class LoadedPair(ShortRepr):
         Contact pressure of each; nan where nothing carries.
     half_width : (k,) array, mm
         Half the width of each contact.
-    yields : float or None, MPa
-        The lower yield stress.
+    yielding : float, MPa
+        Contact pressure at which either part first yields; infinite if unknown.
     """
 
     forces: ToothForces
     pressure: Array
     half_width: Array
-    yields: float | None
+    yielding: float
 
     @property
     def shares(self) -> str:
@@ -128,21 +128,20 @@ def load_reverses(loaded: LoadedPair, limit: float) -> Iterator[Remark]:  # noqa
         )
 
 
-_PRESSURE: Final = (
-    "contact_pressure",
-    Param(MPA, ge=0, le=1e5, doc="largest contact pressure; 0: 1.79 times the yield stress"),
-    0.0,
+@check(
+    "contact-pressure",
+    kind=(FORCES, STRESS),
+    limit=CONTACT_PRESSURE,
+    relation="at most",
+    unit="MPa",
 )
-
-
-@check("contact-pressure", kind=(FORCES, STRESS), limit=_PRESSURE, relation="at most", unit="MPa")
 def contact_pressure(loaded: Pressed, limit: float) -> Iterator[Remark]:
     """Warn of a contact pressure at which flanks wear or yield.
 
-    Looks at: Hertz pressure of all contacts; without a limit against 1.79 times the lower yield
-    stress, where a line contact first yields, if one is given.
+    Looks at: Hertz pressure of all contacts; without a limit against that at which either wheel
+    first yields, if a yield stress is given.
     """
-    most = limit or FIRST_YIELD * (loaded.yields or np.inf)
+    most = limit or loaded.yielding
     if np.isnan(loaded.pressure).all():
         return
     worst = int(np.nanargmax(loaded.pressure))

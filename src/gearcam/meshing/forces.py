@@ -15,7 +15,7 @@ Sources: 000, section 4.1.3.9, eqs. 4.88 to 4.97, for round wheels; journals 000
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
 
@@ -69,6 +69,15 @@ class LoadedTeeth(ShortRepr):
     gain: Array
     lost: Array
     smooth: Array
+
+    @property
+    def friction(self) -> Array:
+        """Force along the flank over the normal force, (k,), against the sliding.
+
+        Positive if it is the normal force turned clockwise, on either wheel.
+        """
+        made: Array = -np.imag(self.push / self.points.force)
+        return made
 
     def summed(self, values: NDArray[Any], count: int) -> NDArray[Any]:
         """Return sums of `values` of contacts over `count` phases, by shares; nan without any."""
@@ -259,14 +268,7 @@ def _loaded_teeth(
             level.append(np.full(each.step.shape, number))
             teeth.append(np.stack([wheel.number(each.pair) for wheel in pairs.wheels]))
     order = np.argsort(np.concatenate([each.step for each in found]), kind="stable")
-    points = Contacts(
-        **{
-            one.name: np.concatenate([getattr(each, one.name) for each in found], axis=-1)[
-                ..., order
-            ]
-            for one in fields(Contacts)
-        }
-    )
+    points = Contacts.joined(found).take(order)
     guide, distance = sides[0][0].guide, sides[0][0].distance
     ratio = guide.motion(phi1[points.step])[1] + points.drift
     one, per_turn = -1j * points.point, guide.carried(points.point - distance)

@@ -57,6 +57,13 @@ def snapped(values: Array, marks: Array, within: ArrayLike) -> Array:
     return np.where(np.abs(values - nearest) <= within, nearest, values)
 
 
+def indices_among(values: Ints, others: Ints) -> Ints:
+    """Return where `values`, (n,), stand among `others`, (k,), which have each of them once."""
+    order = np.argsort(others)
+    made: Ints = order[np.searchsorted(others, values, sorter=order)]
+    return made
+
+
 def opposite(one: Array, other: Array) -> Mask:
     """Return where `one` and `other` have opposite signs; their products may underflow to 0."""
     return np.sign(one) * np.sign(other) < 0.0

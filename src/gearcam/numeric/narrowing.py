@@ -102,6 +102,37 @@ def peaks(function: Function, low: Array, high: Array, tolerance: float) -> tupl
     return places[best], values[best]
 
 
+def summits(
+    functions: Callable[[Array], Array], samples: Array, low: Array, high: Array, tolerance: float
+) -> tuple[Ints, Array, Array]:
+    """Return where several functions of one axis are largest, between samples too.
+
+    Parameters
+    ----------
+    functions : callable
+        Returns q values, (q, m), at rising places, (m,); -inf where they are not known.
+    samples : (q, n) array
+        Their values at n places.
+    low, high : (n,) arrays
+        Between which places the values around each sample lie.
+    tolerance : float
+        Largest width at which a bracket counts as a place.
+
+    Returns
+    -------
+    which, places, values : (k,) arrays
+        Number of the function, and place and value of each of its highest peaks.
+    """
+    which, at = highest(samples, np.array([0, samples.shape[1]]))
+
+    def function(places: Array, rows: Ints) -> Array:
+        flat, index = np.unique(places, return_inverse=True)
+        values = functions(flat)[:, index.reshape(places.shape)]
+        return values[which[rows], np.arange(len(rows))]
+
+    return which, *peaks(function, low[at], high[at], tolerance)
+
+
 def _narrowed(
     function: Function,
     low: Array,

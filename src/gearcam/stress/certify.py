@@ -315,10 +315,8 @@ def indicators(body: ElasticBody, moved: Plane) -> Array:
         Energy norms, per width, of the stress less its averages at the nodes.
     """
     nodes, values, _, areas = body.shapes
-    at, count = nodes.ravel(), len(body.mesh.nodes)
-    own = body.stress(moved, at_nodes=True).reshape(3 * moved.shape[1], -1)
-    times = np.bincount(at, minlength=count)
-    means = np.stack([np.bincount(at, one, count) / times for one in own])
+    own = body.stress(moved, at_nodes=True)
+    means = body.mesh.averaged(own.reshape(-1, *nodes.shape))
     smooth = (means[:, nodes] @ values).reshape(3, moved.shape[1], *areas.shape)
     squares = body.moduli.energy(smooth - body.stress(moved)) * areas
     made: Array = np.sqrt(squares.sum(axis=-1))

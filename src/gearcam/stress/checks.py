@@ -83,7 +83,7 @@ class StressedPair(ShortRepr):
     phi1 : (n,) array, rad
         Phases.
     lag : (n,) array, rad
-        Lag of the driven wheel; nan where nothing carries.
+        Lag of the driven wheel.
     step : (k,) int array
         Phase of each contact.
     pressure : (k,) array, MPa
@@ -92,8 +92,8 @@ class StressedPair(ShortRepr):
         Share of the load that the end of a flank carries.
     certified : tuple of CertifiedRoot
         Certified stresses.
-    yields : float or None, MPa
-        The lower yield stress.
+    yielding : float, MPa
+        Contact pressure at which either wheel first yields; infinite if unknown.
     unstated : (m,) array, rad
         Phases with a load at which no teeth carry, or friction locks them.
     held : str
@@ -106,7 +106,7 @@ class StressedPair(ShortRepr):
     pressure: Array
     edge_share: Array
     certified: tuple[CertifiedRoot, ...]
-    yields: float | None
+    yielding: float
     unstated: Array
     held: str = ""
 
@@ -215,11 +215,9 @@ def loaded_error(pair: StressedPair, limit: float) -> Iterator[Remark]:
 
     Looks at: lag of the driven wheel, largest less smallest.
     """
-    if not limit or np.isnan(pair.lag).all():
-        return
-    found = float(np.nanmax(pair.lag) - np.nanmin(pair.lag))
-    if found > limit:
-        place = angle_text(float(pair.phi1[int(np.nanargmax(pair.lag))]))
+    found = float(np.ptp(pair.lag))
+    if limit and found > limit:
+        place = angle_text(float(pair.phi1[int(pair.lag.argmax())]))
         message = "The lag of the driven wheel changes much over the turn."
         yield Remark(message, place, found / ARCSEC.factor, limit=limit / ARCSEC.factor)
 

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.base.display import ShortRepr
-from gearcam.numeric.arrays import Array, Ints, Mask, Plane
+from gearcam.mechanics import hertz
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane, indices_among
 from gearcam.stress.fillet import BESIDE
 from gearcam.stress.hertz_load import past
 from gearcam.stress.influence import Influence
@@ -46,6 +47,8 @@ class TouchingTeeth(ShortRepr):
         Gap between the flanks, 0 where they touch.
     curvature : (k,) array, 1/mm
         Relative curvature, above 0.
+    friction : (k,) array
+        Force along the flank over the normal force (see `LoadedTeeth.friction`).
     edge : (k,) bool array
         Whether the end of a flank touches.
     """
@@ -58,6 +61,7 @@ class TouchingTeeth(ShortRepr):
     gain: Array
     gap: Array
     curvature: Array
+    friction: Array
     edge: Mask
 
     @cached_property
@@ -105,8 +109,6 @@ class LoadedCycle(ShortRepr):
         Normal force of each contact.
     half_width : (k,) array, mm
         Hertz's half-width of each.
-    places : (2, k) array, mm
-        s of each on the boundary of both wheels.
     roots : (RootStress, RootStress)
         Of driver and driven wheel.
     """
@@ -115,12 +117,16 @@ class LoadedCycle(ShortRepr):
     sharing: Sharing
     force: Array
     half_width: Array
-    places: Array
     roots: tuple[RootStress, RootStress]
 
 
 def touching_teeth(
-    pairs: FlankPairs, phi1: Array, found: Contacts, gain: Array, about: EdgeGaps | None
+    pairs: FlankPairs,
+    phi1: Array,
+    found: Contacts,
+    gain: Array,
+    friction: Array,
+    about: EdgeGaps | None,
 ) -> TouchingTeeth:
     """Return the contacts of one side that may carry.
 
@@ -132,8 +138,8 @@ def touching_teeth(
         Phases.
     found : Contacts
         Its flank contacts at them.
-    gain : (k,) array, mm
-        Levers of their forces with friction.
+    gain, friction : (k,) arrays, mm and 1
+        Levers of their forces with friction, and the force along the flank over the normal force.
     about : EdgeGaps or None
         Pairs about to touch on an edge; these are without friction.
 
@@ -156,18 +162,17 @@ def touching_teeth(
     # all touch at the lead of the phase, but for gaps that are small beside the wheels
     lead = np.zeros(len(phi1))
     lead[found.step] = found.lead
-    pose = pairs.guide.pose((pairs.guide.nominal(phi1) + lead)[step])
-    ahead, back = np.exp(1j * phi1[step]), np.conj(pose.rotation)
-    own = point - pairs.distance - pose.shift
+    origins, turns = pairs.frames(phi1[step], (pairs.guide.nominal(phi1) + lead)[step])
     return TouchingTeeth(
         step=step,
         teeth=np.stack([wheel.number(pair) for wheel in pairs.wheels]),
-        points=np.stack([point * ahead, own * back]),
-        directions=np.stack([-force * ahead, force * back]),
+        points=(point - origins) * turns,
+        directions=np.stack([-force, force]) * turns,
         lever=np.concatenate([found.lever[1], *on_edges])[order],
         gain=np.concatenate([gain, *on_edges])[order],
         gap=np.concatenate(gaps)[order],
         curvature=joined("curvature")[order],
+        friction=np.concatenate([friction, np.zeros(len(step) - len(friction))])[order],
         edge=np.repeat([False, True], [len(found.step), len(step) - len(found.step)])[order],
     )
 
@@ -221,7 +226,7 @@ def loaded_cycle(
         widths,
     )
     force = sharing.force[touching.step, touching.column]
-    half_width = widths.half_widths(force, touching.curvature)
+    half_width = hertz.half_width(force, touching.curvature, widths.material)
     roots = [
         _root_stress(wheel, touching, one, force, half_width, count)
         for wheel, one in zip(wheels, found, strict=True)
@@ -231,7 +236,6 @@ def loaded_cycle(
         sharing=sharing,
         force=force,
         half_width=half_width,
-        places=np.stack([one[0] for one in found]),
         roots=(roots[0], roots[1]),
     )
 
@@ -242,8 +246,7 @@ Interpolated = tuple[Array, Ints, Array]
 
 def _interpolated(wheel: Influence, teeth: Ints, points: Plane) -> Interpolated:
     """Return where contacts are on the flanks of a wheel."""
-    order = np.argsort(wheel.numbers)
-    row = order[np.searchsorted(wheel.numbers, teeth, sorter=order)]
+    row = indices_among(teeth, wheel.numbers)
     s = wheel.placed(row, points)
     return s, *wheel.shares(row, s)
 

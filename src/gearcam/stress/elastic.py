@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.numeric.arrays import Array, Ints, Mask, Plane, as_complex, as_pairs
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane, as_complex, as_pairs, indices_among
 from gearcam.stress.region import BoundaryCurve, Region
 
 if TYPE_CHECKING:
@@ -135,13 +135,6 @@ def _keys(pairs: Ints) -> Ints:
     return (pairs.min(axis=1) << 32) + pairs.max(axis=1)
 
 
-def _places(keys: Ints, among: Ints) -> Ints:
-    """Return the indices of `keys`, (k,), `among` others, which have each of them once."""
-    order = np.argsort(among)
-    made: Ints = order[np.searchsorted(among, keys, sorter=order)]
-    return made
-
-
 @dataclass(frozen=True, eq=False, kw_only=True)
 class CurvedMesh(ShortRepr):
     """Triangles of six nodes that fill a region.
@@ -192,7 +185,7 @@ class CurvedMesh(ShortRepr):
     @cached_property
     def edges(self) -> Ints:
         """Nodes of the boundary edges, (b, 3): one end, the middle, the other end."""
-        numbers = _places(_keys(self.ends), _keys(self._straight.facets.T.astype(np.int64)))
+        numbers = indices_among(_keys(self.ends), _keys(self._straight.facets.T.astype(np.int64)))
         return np.column_stack([self.ends[:, 0], len(self.points) + numbers, self.ends[:, 1]])
 
     def _half_way(self, value: Callable[[BoundaryCurve, Array], Any]) -> Any:
@@ -242,6 +235,18 @@ class CurvedMesh(ShortRepr):
             areas=basis.dx,
         )
 
+    def averaged(self, values: Array) -> Array:
+        """Return the means at the nodes, (k, n), of values at the nodes of each triangle.
+
+        Parameters
+        ----------
+        values : (k, t, 6) array
+            Values of k quantities.
+        """
+        at, count = self.shapes(at_nodes=True).nodes.ravel(), len(self.nodes)
+        times = np.bincount(at, minlength=count)
+        return np.stack([np.bincount(at, one.ravel(), count) / times for one in values])
+
     def along(self, curve: int, s: Array) -> tuple[Ints, Array]:
         """Return the nodes of the edges at places of a boundary, and their shape functions there.
 
@@ -274,7 +279,7 @@ class CurvedMesh(ShortRepr):
         sides = sides[sides[:, 1] >= len(self.points)]
         sides = sides[np.argsort(sides[:, 1], kind="stable")]
         # the two neighbours of a new corner on the boundary are the ends of the edge it divides
-        divided = _places(_keys(sides[:, 0].reshape(-1, 2)), _keys(self.ends))
+        divided = indices_among(_keys(sides[:, 0].reshape(-1, 2)), _keys(self.ends))
         corners, points = sides[::2, 1], as_complex(fine.p.T)
         points[corners] = self.middles[divided]
         parts = np.ones(len(self.ends), dtype=np.int64)

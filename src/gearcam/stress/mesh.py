@@ -103,21 +103,6 @@ class TriangleMesh(ShortRepr):
         """Vertices of the boundary edges, (b, 2), the metal to their left."""
         return np.column_stack([np.arange(len(self.follows)), self.follows])
 
-    @cached_property
-    def held(self) -> Mask:
-        """Whether a boundary edge is held, (b,)."""
-        made = np.zeros(len(self.curve), dtype=bool)
-        middles = 0.5 * (self.start + self.end)
-        for number, curve in enumerate(self.region.curves):
-            here = self.curve == number
-            made[here] = curve.held(middles[here])
-        return made
-
-    @cached_property
-    def angles(self) -> Array:
-        """Smallest angle of each triangle, (m,), rad."""
-        return _angles(self.points[self.triangles]).min(axis=1)
-
 
 def graded(region: Region, points: Plane, sizes: Array, largest: float) -> TriangleMesh:
     """Return triangles that fill a region.
@@ -429,9 +414,3 @@ def _proven(region: Region, border: _Border, made: _Joined) -> TriangleMesh:
         end=border.end,
         follows=border.follows,
     )
-
-
-def _angles(corners: Plane) -> Array:
-    """Return the angles at the corners of triangles, (m, 3), rad."""
-    ahead, back = np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners
-    return np.abs(np.angle(back * np.conj(ahead)))

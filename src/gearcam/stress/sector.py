@@ -24,10 +24,10 @@ _SHORT: Final = 1e-9
 """Shortest piece of a cut run, of the curve: rounding."""
 
 
-def sector(region: Region, start: float, end: float, depth: float, center: complex = 0j) -> Region:
+def sector(region: Region, start: float, end: float, depth: float) -> Region:
     """Return the part of a region at some of its teeth, held where it is cut.
 
-    The cuts run along rays from the centre to an arc about it.
+    The cuts run along rays from the axis to an arc about it.
 
     Parameters
     ----------
@@ -37,8 +37,6 @@ def sector(region: Region, start: float, end: float, depth: float, center: compl
         s on the curve with the teeth at which it is cut, `end` after `start`: in roots.
     depth : float, mm
         Metal below the roots. Above an opening, or where the region itself is held, there is less.
-    center : complex, mm
-        A point behind the teeth, of a rack a far one.
 
     Returns
     -------
@@ -52,7 +50,7 @@ def sector(region: Region, start: float, end: float, depth: float, center: compl
         needed.
     """
     runs = _between(region.teeth, start, end)
-    points = np.concatenate([run.points for run in runs]) - center
+    points = np.concatenate([run.points for run in runs])
     turn = float(np.angle(points[1:] / points[:-1]).sum())
     outward = math.copysign(1.0, turn)  # teeth that run clockwise are those of a ring
     roots = float((outward * np.abs(points)).min())
@@ -62,7 +60,7 @@ def sector(region: Region, start: float, end: float, depth: float, center: compl
         """Return the height of held or free curves below the teeth, at least `floor`."""
         for curve in region.curves:
             if curve is not region.teeth and curve.runs[0].held == held:
-                others = curve.at(curve.places)[0] - center
+                others = curve.at(curve.places)[0]
                 below = others[np.abs(np.angle(others / middle)) < _BESIDE * abs(turn)]
                 floor = float((outward * np.abs(below)).max(initial=floor))
         return floor
@@ -71,8 +69,8 @@ def sector(region: Region, start: float, end: float, depth: float, center: compl
     height = reach(held=False, floor=lowest)
     if height > max(lowest, roots - _THIN * depth):
         raise ValueError("an opening is too near to the teeth for a sector")
-    feet = outward * height * points[[-1, 0]] / np.abs(points[[-1, 0]]) + center
-    last, first = complex(points[-1] + center), complex(points[0] + center)
+    feet = outward * height * points[[-1, 0]] / np.abs(points[[-1, 0]])
+    last, first = complex(points[-1]), complex(points[0])
     cut = (
         arc_run(last, complex(feet[0]), held=True),
         arc_run(complex(feet[0]), complex(feet[1]), -math.tan(0.25 * turn), held=True),

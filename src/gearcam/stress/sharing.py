@@ -25,6 +25,8 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import InfeasibleError
+from gearcam.mechanics.hertz import half_width
+from gearcam.mechanics.material import MaterialSpec
 from gearcam.numeric.arrays import Array
 
 _STEPS: Final = 60
@@ -62,21 +64,17 @@ class ContactWidths(ShortRepr):
 
     Parameters
     ----------
-    contact_modulus : float, MPa
-        ``1/((1 - nu1^2)/E1 + (1 - nu2^2)/E2)``.
+    material : MaterialSpec
+        Of both wheels.
     local : float, mm^2/N
         ``1/(pi*E1') + 1/(pi*E2')``, E' the modulus along a free edge.
     spread : float, mm
         Half-width b over which the loads of the compliance are spread, of both wheels.
     """
 
-    contact_modulus: float
+    material: MaterialSpec
     local: float
     spread: float
-
-    def half_widths(self, force: Array, curvature: Array) -> Array:
-        """Return half-widths, mm, under a `force` per width, N/mm, at a `curvature`, 1/mm."""
-        return np.sqrt(4.0 * force / (np.pi * curvature * self.contact_modulus))
 
     def closed(self, force: Array, curvature: Array) -> tuple[Array, Array]:
         """Return by what contacts close beside the compliance, mm, and its slope, mm^2/N.
@@ -88,7 +86,7 @@ class ContactWidths(ShortRepr):
         curvature : array, 1/mm
             Relative curvatures.
         """
-        width = self.half_widths(force, curvature)
+        width = half_width(force, curvature, self.material)
         shared = self.local * (0.5 + 2.0 * np.log(self.spread / width))
         return force * shared, shared - self.local
 

@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 
 from gearcam.base.errors import InfeasibleError
+from gearcam.mechanics.material import MaterialSpec
 from gearcam.stress import sharing
 from gearcam.stress.sharing import ContactWidths, share
 
-STIFF = ContactWidths(contact_modulus=1e5, local=0.0, spread=0.5)
+STIFF = ContactWidths(material=MaterialSpec(), local=0.0, spread=0.5)
 """Contacts that close by nothing beside the compliance: all is linear."""
 
-STEEL = ContactWidths(contact_modulus=113187.0, local=2.0 / (math.pi * 226374.0), spread=0.5)
+STEEL = ContactWidths(material=MaterialSpec(), local=2.0 / (math.pi * 226374.0), spread=0.5)
 
 
 def springs(*, gap: float, coupled: float = 0.0) -> tuple[Any, Any, Any, Any, Any, Any]:
@@ -64,7 +65,7 @@ def test_the_contacts_close_as_half_planes_do() -> None:
         np.repeat(one, len(many), axis=0) for one in (compliance, lever, gap, curvature)
     )
     made = share(compliance, lever, lever, gap, curvature, many, STEEL)
-    width = np.sqrt(4.0 * made.force / (np.pi * 0.1 * STEEL.contact_modulus))
+    width = np.sqrt(4.0 * made.force / (np.pi * 0.1 * STEEL.material.contact_modulus))
     with np.errstate(divide="ignore", invalid="ignore"):
         local = made.force * STEEL.local * (0.5 + 2.0 * np.log(0.5 / width))
     local = np.nan_to_num(local)

@@ -18,7 +18,7 @@ from gearcam.cams.spec import FORCES
 from gearcam.kinds.cam.charts import over_driver
 from gearcam.kinds.cam.hints import enlarged
 from gearcam.kinds.cam.under_load import UnderLoad, efficiency_away_from_rest
-from gearcam.mechanics.hertz import half_width
+from gearcam.mechanics.hertz import half_width, yield_pressure
 from gearcam.pictures.charts import Chart, Limit, Line
 from gearcam.results.study import StudyResult
 
@@ -82,7 +82,7 @@ def study_forces(result: CamResult, progress: Progress) -> StudyResult:
             statics=statics,
             pressure=pressure,
             pointed=math.isinf(result.follower.bend),
-            yields=design.material.weakest,
+            yielding=yield_pressure(design.material),
             torque=scale * statics.torque if turns else np.full(x.shape, np.nan),
             way=way if len(loads.ways) > 1 else None,
             release=design.drive.words(release[0]) if release and release[0] else "",

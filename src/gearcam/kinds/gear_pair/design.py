@@ -259,12 +259,18 @@ def _load_faults(
 
 
 def _tooth_breaches(values: Values) -> Iterator[Breach]:
-    """Yield the teeth to study that the driver does not have."""
-    teeth, counts = values["meshing.teeth"].right, values["pair.teeth"].right
-    most = counts[0] if isinstance(counts, list) and counts else None
-    for index, tooth in enumerate(teeth if isinstance(teeth, list) else ()):
-        if _is_number(most) and _is_number(tooth) and tooth > most:
-            yield "meshing.teeth", index, "the driver has no such tooth", f"1 to {show(most)}"
+    """Yield the teeth to study that a wheel does not have."""
+    counts, wheel = values["pair.teeth"].right, values["stress.wheel"].right
+    rows = [
+        ("meshing.teeth", 1, "the driver has no such tooth"),
+        ("stress.teeth", wheel, "the wheel has no such tooth"),
+    ]
+    for key, own, why in rows:
+        teeth, number = values[key].right, 2 if own == 2 else 1
+        most = counts[-1 if number == 2 else 0] if isinstance(counts, list) and counts else None
+        for index, tooth in enumerate(teeth if isinstance(teeth, list) else ()):
+            if _is_number(most) and _is_number(tooth) and tooth > most:
+                yield key, index, why, f"1 to {show(most)}"
 
 
 RULES: Final = (

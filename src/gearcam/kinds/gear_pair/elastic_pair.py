@@ -11,12 +11,12 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import InfeasibleError
 from gearcam.kinds.gear_pair.forces import PairUnderLoad
-from gearcam.meshing.contact import contacts
 from gearcam.meshing.edges import first_touch
 from gearcam.results.study import silent
 
 if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.result import GearPairResult
+    from gearcam.meshing.contact import Contacts
     from gearcam.numeric.arrays import Array, Ints
     from gearcam.results.study import Progress
     from gearcam.stress.checks import CertifiedRoot
@@ -70,6 +70,8 @@ class Entries(ShortRepr):
         Tooth numbers.
     force, half_width, curvature : (k,) arrays, N/mm, mm and 1/mm
         Normal force per width, and the contact.
+    friction : (k,) array
+        Force along the flank over the normal force (see `LoadedTeeth.friction`).
     edge : (k,) bool array
         Whether the end of a flank touches.
     points, directions : (2, k) complex arrays, mm and 1
@@ -90,6 +92,7 @@ class Entries(ShortRepr):
     force: Array
     half_width: Array
     curvature: Array
+    friction: Array
     edge: Any
     points: Any
     directions: Any
@@ -114,6 +117,22 @@ class Entries(ShortRepr):
         sums = np.bincount(self.step, self.force, len(self.phi1))
         made: Array = self.force / sums[self.step]
         return made
+
+
+class FlankTouch(NamedTuple):
+    """Contacts of the flanks of one side.
+
+    Attributes
+    ----------
+    points : Contacts
+        The k contacts.
+    gain, friction : (k,) arrays, mm and 1
+        See `TouchingTeeth`.
+    """
+
+    points: Contacts
+    gain: Array
+    friction: Array
 
 
 class SolvedSide(NamedTuple):
@@ -156,7 +175,7 @@ class ElasticPair:
 
     def __init__(self, result: GearPairResult, progress: Progress = silent) -> None:
         from gearcam.stress.elastic import PlaneModuli
-        from gearcam.stress.region import region_of
+        from gearcam.stress.region import region_of, tooth_spans
 
         self.result, self.under, self._progress = result, PairUnderLoad(result), progress
         self.spec = result.design.stress
@@ -172,6 +191,7 @@ class ElasticPair:
             )
             for young, poisson in result.design.material.elasticity
         )
+        self.spans = tuple(map(tooth_spans, self.regions, result.gears))
         self._wheels: dict[int, tuple[Influence, Influence]] = {}
 
     @property
@@ -182,16 +202,14 @@ class ElasticPair:
     def wheels(self, side: int) -> tuple[Influence, Influence]:
         """Return what forces on the flanks of a `side`, 0 or 1, do to both wheels."""
         from gearcam.stress.influence import influence, loaded_flanks
-        from gearcam.stress.region import tooth_spans
 
         if side not in self._wheels:
             made = []
             flanks = self.under.sides[0][side].wheels
-            for region, gear, one, moduli in zip(
-                self.regions, self.result.gears, flanks, self.moduli, strict=True
+            for region, (numbers, spans), gear, one, moduli in zip(
+                self.regions, self.spans, self.result.gears, flanks, self.moduli, strict=True
             ):
                 self._progress("elastic wheels", len(made), len(self.regions))
-                numbers, spans = tooth_spans(region, gear)
                 ends = loaded_flanks(region, gear, one.sigma, numbers)
                 module = self.result.pair.module
                 made.append(influence(region, module, numbers, spans, ends, moduli))
@@ -215,17 +233,20 @@ class ElasticPair:
         """
         forces = self.under.loaded(phi1).forces
         load = np.where(forces.driven, forces.load, self.under.without_friction(phi1))
-        most = np.nanmax(np.abs(load), initial=0.0)
+        most, teeth = np.nanmax(np.abs(load), initial=0.0), forces.teeth
+        # friction and journals: what the load is over the moment of the normal forces
+        step, gain = teeth.points.step, np.abs(teeth.gain[1])
+        moment = np.bincount(step, forces.of_teeth * gain, len(phi1))[step]
+        with np.errstate(divide="ignore", invalid="ignore"):  # without load
+            gain = gain * np.abs(forces.load[step]) / moment
         found = []
         for side, sign in ((1, 1.0), (0, -1.0)):
             rows = np.flatnonzero(sign * load > _NO_LOAD * most)
-            # friction and journals: what the load is over the moment of the normal forces
-            at = np.isin(forces.teeth.points.step, rows)
-            step, gain = forces.teeth.points.step[at], np.abs(forces.teeth.gain[1][at])
-            moment = np.bincount(step, forces.of_teeth[at] * gain, len(phi1))[step]
-            gain = gain * np.abs(forces.load[step]) / moment
+            at = np.flatnonzero(np.isin(step, rows))
+            points = replace(teeth.points.take(at), step=np.searchsorted(rows, step[at]))
+            touch = FlankTouch(points, gain[at], teeth.friction[at])
             if len(rows):
-                found += self._of_side(side, phi1[rows], sign * load[rows], gain)
+                found += self._of_side(side, phi1[rows], sign * load[rows], touch)
         if not found:
             what, near = (
                 "no teeth carry: there is no stress",
@@ -234,14 +255,14 @@ class ElasticPair:
             raise InfeasibleError(what, where="load", nearest=near)
         return _joined(found)
 
-    def _of_side(self, side: int, phi1: Array, load: Array, gain: Array) -> list[SolvedSide]:
+    def _of_side(self, side: int, phi1: Array, load: Array, touch: FlankTouch) -> list[SolvedSide]:
         """Return the pair with flanks of one side under loads, which are above 0."""
         from gearcam.meshing.about_to_touch import about_to_touch
         from gearcam.stress.cycle import loaded_cycle, touching_teeth
         from gearcam.stress.sharing import ContactWidths
 
         pairs, wheels = self.under.sides[0][side], self.wheels(side)
-        found = contacts(pairs, phi1)
+        found = touch.points
         module, near = self.result.pair.module, _NEAR
         edges = self.spec.edges and not self.spec.alone
         about = about_to_touch(pairs, phi1, found, near * module) if edges else None
@@ -250,15 +271,16 @@ class ElasticPair:
         if not touched.all():  # nothing drives at some of them
             if not touched.any():
                 return []
-            return self._of_side(side, phi1[touched], load[touched], gain[touched[found.step]])
+            left = replace(found, step=(np.cumsum(touched) - 1)[found.step])
+            return self._of_side(side, phi1[touched], load[touched], touch._replace(points=left))
         lead, _ = first_touch(pairs, phi1, found)
         widths = ContactWidths(
-            contact_modulus=self.result.design.material.contact_modulus,
+            material=self.result.design.material,
             local=sum(1.0 / (math.pi * one.along_edge) for one in self.moduli),
             spread=wheels[0].spread,
         )
         while True:
-            touching = touching_teeth(pairs, phi1, found, gain, about)
+            touching = touching_teeth(pairs, phi1, *touch, about)
             rows = touching.step if self.spec.alone else np.arange(len(phi1))
             if self.spec.alone:
                 touching = replace(touching, step=np.arange(len(rows)))
@@ -275,11 +297,10 @@ class ElasticPair:
 
         The second are s from the middle of the root before the tooth to that after it.
         """
-        from gearcam.stress.region import tooth_spans
         from gearcam.stress.sector import sector
 
         region, gear = self.regions[wheel - 1], self.result.gears[wheel - 1]
-        numbers, spans = tooth_spans(region, gear)
+        numbers, spans = self.spans[wheel - 1]
         own = spans[int(np.flatnonzero(numbers == tooth)[0])]
         whole = region, (float(own[0]), float(own[1]))
         if gear.toothing.teeth <= _LARGE or not gear.toothing.closed:
@@ -333,6 +354,7 @@ class ElasticPair:
                 float(entries.force[k]),
                 curvature=float(entries.curvature[k]),
                 material=material,
+                friction=float(entries.friction[k]),
             )
             for k in here
         ]
@@ -395,6 +417,7 @@ def _joined(found: list[SolvedSide]) -> Entries:
         force=teeth([one.force for one in cycles]),
         half_width=teeth([one.half_width for one in cycles]),
         curvature=teeth([one.touching.curvature for one in cycles]),
+        friction=teeth([one.touching.friction for one in cycles]),
         edge=teeth([one.touching.edge for one in cycles]),
         points=teeth([one.touching.points for one in cycles]),
         directions=teeth([one.touching.directions for one in cycles]),

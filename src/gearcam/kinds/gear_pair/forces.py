@@ -17,7 +17,7 @@ from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.kinds.gear_pair.drawn import DRIVER
 from gearcam.laws.columns import demand as demand_rows
 from gearcam.laws.ratio.span import angle_text
-from gearcam.mechanics.hertz import half_width, line_pressure
+from gearcam.mechanics.hertz import half_width, line_pressure, yield_pressure
 from gearcam.meshing.force_checks import LoadedPair
 from gearcam.meshing.forces import tooth_forces
 from gearcam.meshing.settings import FORCES
@@ -153,7 +153,7 @@ class PairUnderLoad:
             forces=forces,
             pressure=line_pressure(per_width, forces.teeth.points.curvature, design.material),
             half_width=half_width(per_width, forces.teeth.points.curvature, design.material),
-            yields=design.material.weakest,
+            yielding=yield_pressure(design.material),
         )
 
     def places(self) -> Array:
@@ -183,18 +183,14 @@ class PairUnderLoad:
 
         Between them these change little, but for where teeth begin or cease to touch.
         """
-        found = _sought(self.loaded(x))
-        which, at = narrowing.highest(found, np.array([0, len(x)]))
 
-        def function(places: Array, rows: Ints) -> Array:
-            flat, index = np.unique(places, return_inverse=True)
-            values = _sought(self.loaded(flat))[:, index.reshape(places.shape)]
-            return values[which[rows], np.arange(len(rows))]
+        def sought(places: Array) -> Array:
+            return _sought(self.loaded(places))
 
-        ends = x[np.maximum(at - 1, 0)], x[np.minimum(at + 1, len(x) - 1)]
-        places, values = narrowing.peaks(function, *ends, _NARROW * self.travel)
-        largest = [np.flatnonzero(which == number) for number in range(len(found))]
-        return places[[rows[np.argmax(values[rows])] for rows in largest if rows.size]]
+        ends = np.append(x[:1], x[:-1]), np.append(x[1:], x[-1:])
+        which, places, values = narrowing.summits(sought, sought(x), *ends, _NARROW * self.travel)
+        largest = [np.flatnonzero(which == number) for number in np.unique(which)]
+        return places[[rows[np.argmax(values[rows])] for rows in largest]]
 
 
 def _sought(loaded: LoadedPair) -> Array:
@@ -464,11 +460,10 @@ def _pressed(under: PairUnderLoad, loaded: LoadedPair) -> Iterator[ColouredCurve
     if np.isnan(loaded.pressure).all():
         return
     step, point = teeth.points.step, teeth.points.point
-    guide, phi1 = result.pair.rolling.guide, forces.phi1[step]
-    pose = guide.pose(forces.phi2[step])
-    own = point - under.sides[0][0].distance - pose.shift
-    frames = point * np.exp(1j * phi1), own * np.conj(pose.rotation)
-    for part, number, points in zip(result.parts, teeth.teeth, frames, strict=True):
+    phi1 = forces.phi1[step]
+    origins, turns = under.sides[0][0].frames(phi1, forces.phi2[step])
+    own = (point - origins) * turns
+    for part, number, points in zip(result.parts, teeth.teeth, own, strict=True):
         order = np.lexsort((step, number))
         order = order[teeth.level[order] == 0]
         # a flank ends where the tooth changes, and where it meets the next one a turn later

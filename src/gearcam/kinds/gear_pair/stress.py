@@ -20,18 +20,19 @@ from gearcam.kinds.gear_pair import forces as loads
 from gearcam.kinds.gear_pair.drawn import DRIVER
 from gearcam.kinds.gear_pair.elastic_pair import ROOTS, ElasticPair, Entries
 from gearcam.laws.ratio.span import angle_text
-from gearcam.mechanics.hertz import line_pressure
+from gearcam.mechanics.hertz import line_pressure, yield_pressure
 from gearcam.meshing.settings import STRESS
 from gearcam.numeric import narrowing
+from gearcam.numeric.arrays import indices_among
 from gearcam.pictures.charts import Chart, Line, knot_marks
 from gearcam.results.study import StudyResult
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
 
     from gearcam.gears.pair import Gear
     from gearcam.kinds.gear_pair.result import GearPairResult
-    from gearcam.numeric.arrays import Array, Ints
+    from gearcam.numeric.arrays import Array
     from gearcam.pictures.scenes import ColouredCurve
     from gearcam.results.study import Progress
     from gearcam.stress.checks import CertifiedRoot, StressedPair
@@ -88,12 +89,11 @@ def study_stress(result: GearPairResult, progress: Progress) -> StudyResult:
     Raises
     ------
     DesignError
-        If a load does not fit, or there is no such tooth.
+        If a load does not fit.
     InfeasibleError
         If the wheels are impossible, or cannot be held so.
     """
     pair = ElasticPair(result, progress)
-    asked = _asked(pair)
     with result.stage("shares"):
         even = _phases(pair)
         entries = pair.entries(even)
@@ -102,7 +102,7 @@ def study_stress(result: GearPairResult, progress: Progress) -> StudyResult:
     interrupted = ""
     with result.stage("certificates"):
         try:
-            chosen = asked(entries)
+            chosen = _chosen(pair, entries)
             for number, (own, wheel, tooth, entry) in enumerate(chosen):
                 progress("certified roots", number, len(chosen))
                 certified.append(pair.certified(own, wheel, tooth, entry))
@@ -133,9 +133,9 @@ def _phases(pair: ElasticPair) -> Array:
 
 
 def _sought(entries: Entries, phi1: Array) -> Array:
-    """Return what is sought at rising driver angles, (4, n): -inf where nothing carries.
+    """Return the worst root of either wheel, and the lag, both ways, at rising driver angles.
 
-    The worst root of either wheel, and the lag, both ways.
+    (4, n), -inf where nothing carries.
     """
     found = np.full((4, len(phi1)), -np.inf)
     at = np.searchsorted(phi1, entries.phi1)
@@ -161,64 +161,51 @@ def extremes(pair: ElasticPair, even: Array, entries: Entries) -> Array:
     -------
     (k,) array, rad
     """
-    which, at = narrowing.highest(_sought(entries, even), np.array([0, len(even)]))
 
-    def function(places: Array, rows: Ints) -> Array:
-        flat, index = np.unique(places, return_inverse=True)
+    def sought(places: Array) -> Array:
         try:
-            made = pair.entries(flat)
+            return _sought(pair.entries(places), places)
         except InfeasibleError:
-            return np.full(places.shape, -np.inf)
-        values = _sought(made, flat)[:, index.reshape(places.shape)]
-        return values[which[rows], np.arange(len(rows))]
+            return np.full((4, len(places)), -np.inf)
 
-    step = pair.under.travel / len(even)
-    places, _ = narrowing.peaks(function, even[at] - step, even[at] + step, _NARROW * step)
-    inside = places if pair.under.turns else places.clip(0.0, pair.under.travel)
-    return np.mod(inside, pair.under.travel) if pair.under.turns else inside
+    step, travel = pair.under.travel / len(even), pair.under.travel
+    known = _sought(entries, even)
+    _, at, _ = narrowing.summits(sought, known, even - step, even + step, _NARROW * step)
+    return np.mod(at, travel) if pair.under.turns else at.clip(0.0, travel)
 
 
 Chosen = tuple[Entries, int, int, int]
 """Entries, wheel, tooth and number of the entry whose stress is certified."""
 
 
-def _asked(pair: ElasticPair) -> Callable[[Entries], list[Chosen]]:
-    """Return the function that chooses what is certified among all entries; checked before."""
-    spec, design = pair.spec, pair.result.design
+def _chosen(pair: ElasticPair, entries: Entries) -> list[Chosen]:
+    """Return what is certified: the worst root of each wheel, or those that are asked for."""
+    spec = pair.spec
     wheels = WHEELS if spec.wheel is None else (spec.wheel,)
     if spec.teeth is not None and spec.wheel is None:
         wheels = (1,)
-    for index, tooth in enumerate(spec.teeth or ()):
-        most = min(design.pair.teeth[wheel - 1] for wheel in wheels)
-        if tooth > most:
-            what = f"{tooth}: the wheel has no such tooth"
-            key = f"stress.teeth[{index}]"
-            raise DesignError([Problem(what, file=design.source, key=key, allowed=f"1 to {most}")])
+    if spec.phi1 is not None:
+        entries = _at(pair, entries, spec.phi1)
+    found = []
+    for wheel in wheels:
+        worst, numbers = entries.worst[wheel - 1], entries.numbers[wheel - 1]
+        for teeth in [[tooth] for tooth in spec.teeth or ()] or [numbers]:
+            columns = np.flatnonzero(np.isin(numbers, teeth))
+            at = int(worst[:, columns].argmax())
+            entry, column = divmod(at, len(columns))
+            found.append((entries, wheel, int(numbers[columns[column]]), entry))
+    return found
 
-    def chosen(entries: Entries) -> list[Chosen]:
-        if spec.phi1 is not None:
-            try:
-                entries = pair.entries(np.array([spec.phi1]))
-            except InfeasibleError as error:
-                near = float(entries.phi1[np.abs(entries.phi1 - spec.phi1).argmin()])
-                what, key = f"no teeth carry at {angle_text(spec.phi1)}", "stress.phi1_deg"
-                nearest = f"{formatted(math.degrees(near))} deg"
-                raise InfeasibleError(what, where=key, nearest=nearest) from error
-        found = []
-        for wheel in wheels:
-            worst, numbers = entries.worst[wheel - 1], entries.numbers[wheel - 1]
-            for tooth in spec.teeth or (None,):
-                columns = (
-                    np.arange(len(numbers)) if tooth is None else np.flatnonzero(numbers == tooth)
-                )
-                entry, column = np.unravel_index(
-                    int(worst[:, columns].argmax()), (len(worst), len(columns))
-                )
-                number = int(numbers[columns[column]])
-                found.append((entries, wheel, number, int(entry)))
-        return found
 
-    return chosen
+def _at(pair: ElasticPair, entries: Entries, phi1: float) -> Entries:
+    """Return the pair at the phase that is asked for."""
+    try:
+        return pair.entries(np.array([phi1]))
+    except InfeasibleError as error:
+        near = float(entries.phi1[np.abs(entries.phi1 - phi1).argmin()])
+        what, key = f"no teeth carry at {angle_text(phi1)}", "stress.phi1_deg"
+        nearest = f"{formatted(math.degrees(near))} deg"
+        raise InfeasibleError(what, where=key, nearest=nearest) from error
 
 
 def _stressed(
@@ -244,7 +231,7 @@ def _stressed(
         pressure=np.where(carries & ~entries.edge, pressure, np.nan),
         edge_share=edge_share,
         certified=certified,
-        yields=material.weakest,
+        yielding=yield_pressure(material),
         held=_held_on(pair) if unheld else "",
     )
 
@@ -265,9 +252,7 @@ def _columns(pair: ElasticPair, entries: Entries, stressed: StressedPair) -> dic
         "edge": entries.edge[rows].astype(int),
     }
     for wheel in (0, 1):
-        numbers = entries.numbers[wheel]
-        order = np.argsort(numbers)
-        column = order[np.searchsorted(numbers, entries.teeth[wheel, rows], sorter=order)]
+        column = indices_among(entries.teeth[wheel, rows], entries.numbers[wheel])
         for name, values in zip(ROOTS, entries.roots[wheel], strict=True):
             columns[f"{name}{wheel + 1}_mpa"] = values[step, column]
     return columns
@@ -417,6 +402,7 @@ def _of_root(one: CertifiedRoot, least: float) -> Tree:
         "phi1_deg": math.degrees(one.phi1),
         "force_n": one.force,
         "share": one.share,
+        "moved_mm": made.loads[0].moved or None,
         "safety": one.safety
         and Fact(one.safety, f"safety of the {name}", at_least=least, unit="", shown=True),
         "unknowns": made.unknowns,
@@ -481,13 +467,11 @@ def _charts(pair: ElasticPair, entries: Entries) -> dict[str, Chart]:
 def _stressed_teeth(pair: ElasticPair, entries: Entries) -> Iterator[ColouredCurve]:
     """Yield the outlines of both wheels, each tooth in the colour of its worst root."""
     from gearcam.pictures.scenes import ColouredCurve
-    from gearcam.stress.region import tooth_spans
 
-    result, phi1 = pair.result, np.degrees(entries.phi1)
-    for part, gear, region, worst in zip(
-        result.parts, result.gears, pair.regions, entries.worst, strict=True
+    phi1 = np.degrees(entries.phi1)
+    for part, region, (_, spans), worst in zip(
+        pair.result.parts, pair.regions, pair.spans, entries.worst, strict=True
     ):
-        _, spans = tooth_spans(region, gear)
         curve, s = region.teeth, region.teeth.places
         past = (s[:, None] - spans[:, 0]) % curve.length
         tooth = past.argmin(axis=1)

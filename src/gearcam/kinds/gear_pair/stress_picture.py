@@ -45,9 +45,7 @@ def stress_field(certificate: Certificate, module: float) -> StressField:
     upright = 1j * np.conj(at[0]) / abs(at[0])
     middle = at[0] - _BELOW * module * at[0] / abs(at[0])
     nodes = mesh.shapes(at_nodes=True).nodes
-    own = body.moduli.von_mises(body.stress(moved, at_nodes=True)[:, 0])
-    times = np.bincount(nodes.ravel(), minlength=len(mesh.nodes))
-    means = np.bincount(nodes.ravel(), own.ravel(), len(mesh.nodes)) / times
+    means = mesh.averaged(body.moduli.von_mises(body.stress(moved, at_nodes=True)))[0]
     quarters = nodes[:, _QUARTERS].reshape(-1, 3)
     triangles = mesh.nodes[quarters]
     near = np.abs(triangles.mean(axis=1) - middle) < _SEEN * module

@@ -147,6 +147,12 @@ def test_friction_is_in_the_balance() -> None:
     gain = forces.teeth.gain[1]
     assert entries.force * made.width == pytest.approx(40_000.0 / gain, rel=1e-9)
     assert entries.load == pytest.approx(40_000.0)
+    # the force that stresses the tooth, friction included, has the load's moment
+    certificate = made.certified(entries, 2, int(entries.teeth[1, 0]), 0).certificate
+    (load,) = certificate.loads
+    at, _ = made.regions[1].teeth.at(np.array([load.place]))
+    moment = np.imag(np.conj(at) * load.force) * made.width
+    assert np.abs(moment) == pytest.approx(40_000.0, rel=1e-6)
 
 
 def test_a_rack_and_its_wheel() -> None:
