@@ -17,6 +17,7 @@ from gearcam.meshing.contact import Contacts, contacts
 from gearcam.stress.elastic import CurvedMesh, ElasticBody, PlaneModuli, edge_shapes, edge_slopes
 from gearcam.stress.fillet import StressPeak, edge_stress, peak
 from gearcam.stress.hertz_load import FlankLoad, flank_load, hertz_load
+from gearcam.stress.influence import Influence
 from gearcam.stress.mesh import graded
 from gearcam.stress.region import BoundaryCurve, BoundaryRun, Region, arc_run, region_of
 from helpers_pairs import job, profile
@@ -144,3 +145,24 @@ def spur_tooth(teeth: int, tip_radius: float, where: str) -> Tooth:
     region, force = region_of(result.parts[0]), 1.0 / math.cos(math.radians(20.0))
     load = flank_load(region, point, direction, force, half_width=0.02 * 2.0)
     return Tooth(region, 2.0, point, direction, load)
+
+
+def remembered(known: Callable[..., Influence]) -> Callable[..., Influence]:
+    """A function that returns what it has found before for the same wheel."""
+
+    def found(region: Region, module: float, *rest: Any) -> Influence:
+        shape = region.teeth.at(region.teeth.places)[0].tobytes()
+        held = tuple(one.length for one in region.holes)
+        key = (shape, held, module, *map(_key, rest))
+        if key not in _INFLUENCES:
+            _INFLUENCES[key] = known(region, module, *rest)
+        return _INFLUENCES[key]
+
+    return found
+
+
+_INFLUENCES: dict[Any, Influence] = {}
+
+
+def _key(value: Any) -> Any:
+    return value.tobytes() if isinstance(value, np.ndarray) else value

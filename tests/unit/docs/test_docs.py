@@ -163,7 +163,10 @@ def test_every_key_of_the_summary_is_described(name: str, tmp_path: Path) -> Non
 STUDIES: dict[tuple[str, str], tuple[str, dict[str, Any]]] = {
     ("gear-pair", "mesh"): ("ellipse", {"meshing.steps": 24}),
     ("gear-pair", "forces"): ("loaded_nail_machine", {"forces.steps": 24}),
-    ("gear-pair", "stress"): ("loaded_nail_machine", {"stress.phases": 12, "stress.wheel": 1}),
+    ("gear-pair", "stress"): (
+        "circular",
+        {"load": [{"torque_nm": 5}], "stress.phases": 12, "stress.wheel": 1},
+    ),
     ("gear-pair", "errors"): ("ellipse", {"errors.steps": 24}),
     ("cam", "forces"): ("valve_lever", {"forces.steps": 24}),
     ("cam", "follow"): ("tappet", {"follow.file": "profile.csv"}),

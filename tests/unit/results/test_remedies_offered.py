@@ -31,6 +31,7 @@ def sought(document: dict[str, Any], folder: Path) -> Remedies:
     return gearcam.remedies(job_of(document, folder))
 
 
+@pytest.mark.slow
 def test_teeth_keep_a_ratio_that_another_law_would_change(tmp_path: Path) -> None:
     """Two teeth more are enough, and many more are not: between them is no error."""
     found = sought(slow(60, 100.0), tmp_path).found
@@ -43,6 +44,7 @@ def test_teeth_keep_a_ratio_that_another_law_would_change(tmp_path: Path) -> Non
     assert "[61, 61] still fails" in teeth.notes
 
 
+@pytest.mark.slow
 def test_other_teeth_do_not_change_a_motion_with_many_decimals(tmp_path: Path) -> None:
     law = {"type": "multispeed", "ratios": [2, "solve"], "transition_deg": 70}
     law["angles_deg"] = [73.33333333333, 146.66666666667]

@@ -204,7 +204,7 @@ def _at(pair: ElasticPair, entries: Entries, phi1: float) -> Entries:
     except InfeasibleError as error:
         near = float(entries.phi1[np.abs(entries.phi1 - phi1).argmin()])
         what, key = f"no teeth carry at {angle_text(phi1)}", "stress.phi1_deg"
-        nearest = f"{formatted(math.degrees(near))} deg"
+        nearest = f"they do at {formatted(math.degrees(near))} deg"
         raise InfeasibleError(what, where=key, nearest=nearest) from error
 
 

@@ -12,10 +12,18 @@ import pytest
 import gearcam
 from gearcam.base.errors import DesignError, InfeasibleError, MissingExtraError
 from gearcam.kinds.gear_pair import elastic_pair, stress
+from gearcam.stress import influence
+from helpers_elastic import remembered
 from helpers_remedies import CIRCLE, DOOR, ELLIPSE, pair
 
 ROOTS = ("tension_mpa", "compression_mpa")
 LOAD = [{"torque_nm": 40}]
+
+
+@pytest.fixture(autouse=True)
+def _wheels_are_solved_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Most pairs here have the same wheels."""
+    monkeypatch.setattr(influence, "influence", remembered(influence.influence))
 
 
 def built(teeth: int = 12, load: Any = LOAD, law: Any = ELLIPSE, **tables: Any) -> Any:
