@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from gearcam.linkages.elements import Dyad, Known
+from gearcam.linkages.elements import Dyad
+from gearcam.linkages.known import Known
 from gearcam.numeric.arrays import Array
 from helpers_random_linkages import lengths_of, line, place
 

@@ -17,15 +17,7 @@ import numpy as np
 import pytest
 
 from gearcam.linkages.dyads import Lengths
-from gearcam.linkages.elements import (
-    Crank,
-    Dyad,
-    Element,
-    GivenMotion,
-    GuideLine,
-    Law,
-    MemberPoint,
-)
+from gearcam.linkages.elements import Crank, Dyad, Element, GivenMotion, GuideLine, Law, MemberPoint
 from gearcam.linkages.linkage import Linkage, in_order
 from gearcam.numeric import jets
 from gearcam.numeric.arrays import Array

@@ -10,15 +10,8 @@ import numpy as np
 
 from gearcam.linkages.closing import NotClosingError, settled
 from gearcam.linkages.dyads import DYADS, Lengths
-from gearcam.linkages.elements import (
-    Crank,
-    Dyad,
-    Element,
-    GivenMotion,
-    GuideLine,
-    Known,
-    MemberPoint,
-)
+from gearcam.linkages.elements import Crank, Dyad, Element, GivenMotion, GuideLine, MemberPoint
+from gearcam.linkages.known import Known
 from gearcam.linkages.linkage import Linkage, in_order
 from gearcam.numeric import jets
 from gearcam.numeric.arrays import Array

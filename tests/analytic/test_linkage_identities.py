@@ -11,7 +11,8 @@ import pytest
 
 from gearcam.linkages.closing import Closing, NotClosingError, closing, settled
 from gearcam.linkages.dyads import DYADS
-from gearcam.linkages.elements import Dyad, Known
+from gearcam.linkages.elements import Dyad
+from gearcam.linkages.known import Known
 from gearcam.linkages.linkage import Linkage
 from gearcam.numeric.arrays import Array
 from helpers_dyad_loops import Loop

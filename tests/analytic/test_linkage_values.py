@@ -11,15 +11,7 @@ import pytest
 from gearcam.linkages.chain import LeverChain, roots_in
 from gearcam.linkages.closing import NotClosingError, settled
 from gearcam.linkages.dyads import DYADS, Lengths, Solved
-from gearcam.linkages.elements import (
-    Crank,
-    Dyad,
-    Element,
-    GivenMotion,
-    GuideLine,
-    Law,
-    MemberPoint,
-)
+from gearcam.linkages.elements import Crank, Dyad, Element, GivenMotion, GuideLine, Law, MemberPoint
 from gearcam.linkages.linkage import Linkage
 from gearcam.linkages.plane import Frame, imaginary, real, rotation, towards
 from gearcam.numeric.arrays import Array

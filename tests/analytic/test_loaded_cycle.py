@@ -66,6 +66,7 @@ def test_wheels_of_equal_teeth_share_as_their_mirror_images() -> None:
     assert one == pytest.approx(one[::-1], abs=5e-3)
 
 
+@pytest.mark.slow
 def test_a_larger_wheel_of_the_same_material_is_stressed_alike() -> None:
     """Lengths and force per width times ten: the same stresses and angles."""
     _, entries = small()

@@ -324,6 +324,7 @@ def test_jamming_and_a_large_error_are_found(size: float, codes: set[str]) -> No
     assert {one.code for one in found.study_findings} == codes
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", few(["round", "ellipse"]))
 def test_without_backlash_wheels_further_apart_run_free(name: str) -> None:
     document = ROUND if name == "round" else ELLIPSE
@@ -335,6 +336,7 @@ def test_without_backlash_wheels_further_apart_run_free(name: str) -> None:
     assert alone["eccentricity1"]["largest_free_running_mm"] == 0.0
 
 
+@pytest.mark.slow
 def test_tips_do_not_reach_into_roots() -> None:
     """With much backlash the clearance of the rack, 0.25 modules, is what limits."""
     errors = {"center_mm": -0.44, "steps": 48}

@@ -138,6 +138,7 @@ def test_all_overlap_is_that_of_the_whole_outlines(name: str, more: float, count
     assert most > 0.1 * module**2
 
 
+@pytest.mark.slow
 def test_tips_that_meet_far_from_the_mesh_are_found() -> None:
     """28 teeth in 36, full height: corners meet before a quarter of a turn; in 37 they pass."""
     found = {}

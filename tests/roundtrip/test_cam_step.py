@@ -117,6 +117,7 @@ def valid(data: bytes) -> bool:
     return bool(occt.BRepCheck_Analyzer(reader.OneShape()).IsValid())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", chosen(list(CASES), "rib"))
 def test_solids_are_valid_and_have_their_volume(name: str) -> None:
     made, cylinders = named(name), CASES[name][2]

@@ -8,6 +8,7 @@ monotonic stretches are known once and for all, and so is the number of position
 from __future__ import annotations
 
 import cmath
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
@@ -15,7 +16,9 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.linkages.elements import Element, Known
+from gearcam.linkages.bonds import Bond, ChainDrive, Hinge
+from gearcam.linkages.elements import Carriers, Element
+from gearcam.linkages.known import GROUND, Known
 from gearcam.linkages.plane import Frame, rotation, square, towards
 from gearcam.numeric import jets
 from gearcam.numeric.arrays import Array
@@ -134,6 +137,26 @@ class LeverChain(ShortRepr, Element):
         frame = Frame(known.constant(self.hinge), towards(angle))
         known.given[self.name] = frame
         known.given[self.joint] = frame.at(complex(self.length))
+
+    def carried(self, carriers: Carriers) -> Carriers:
+        """Return the lever (see `Element`)."""
+        del carriers
+        return {self.name: self.name, self.joint: self.name}
+
+    def bonds(self, carriers: Carriers) -> Iterator[Bond]:
+        """Yield the lever's hinge and the chain (see `Element`)."""
+        del carriers
+        yield Hinge(name=f"{self.name}.hinge", on=self.name, by=GROUND, place=self.name)
+        yield ChainDrive(
+            name=self.joint,
+            on=self.name,
+            by=GROUND,
+            place=self.joint,
+            center=self.center,
+            radius=self.radius,
+            wind=self.wind,
+            shaft=self.shaft,
+        )
 
 
 def roots_in(chain: LeverChain, turn: float) -> int:

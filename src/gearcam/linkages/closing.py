@@ -16,7 +16,8 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.linkages.dyads import number_of, rtr_distance
-from gearcam.linkages.elements import BRANCH, REACH, Dyad, Element, Known
+from gearcam.linkages.elements import BRANCH, REACH, Dyad, Element
+from gearcam.linkages.known import Known
 from gearcam.linkages.linkage import Linkage
 from gearcam.linkages.narrow import NARROWEST, Narrow, narrow_places, with_narrow_places
 from gearcam.numeric.arrays import Array, apart, opposite, snapped

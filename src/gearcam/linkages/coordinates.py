@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.linkages.elements import GROUND, Known
+from gearcam.linkages.bonds import SlidingJoint, Wrench
+from gearcam.linkages.elements import Carriers
+from gearcam.linkages.known import GROUND, Known
 from gearcam.linkages.linkage import Linkage
 from gearcam.linkages.plane import dot, square, turning
 from gearcam.numeric import jets
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.jets import Jet
 
 
@@ -71,6 +74,41 @@ class WorkCoordinate(ABC):
             Highest derivative of the derivative.
         """
 
+    @abstractmethod
+    def wrenches(self, held: HeldMembers, force: Plane) -> Iterator[tuple[str, Wrench]]:
+        """Yield what a force on it exerts on members, by their names.
+
+        Parameters
+        ----------
+        held : HeldMembers
+            The members.
+        force : (n,) array, N or N mm
+            As of an effort on this coordinate; complex on a point's place.
+        """
+
+
+class HeldMembers:
+    """The members of a solved linkage, for forces on them.
+
+    Parameters
+    ----------
+    known : Known
+        What is solved.
+    carriers : mapping of str to str
+        The members on which joints and frames are, by names.
+    slides : mapping of str to SlidingJoint
+        The guides by the quantities that are places on them.
+    """
+
+    def __init__(
+        self, known: Known, carriers: Carriers, slides: Mapping[str, SlidingJoint]
+    ) -> None:
+        self.known, self.carriers, self.slides = known, carriers, slides
+
+    def force(self, joint: str, force: Plane) -> Iterator[tuple[str, Wrench]]:
+        """Yield a `force` at a `joint`, (n,), N, in the machine's frame."""
+        yield self.carriers[joint], Wrench.at(self.known.place(joint), force)
+
 
 @dataclass(frozen=True)
 class NamedCoordinate(ShortRepr, WorkCoordinate):
@@ -91,6 +129,16 @@ class NamedCoordinate(ShortRepr, WorkCoordinate):
     def rate(self, known: Known, order: int) -> Jet:
         """Return its derivative, of what is `known`, to an `order`."""
         return known.jet(self.name).upto(order + 1).differentiated()
+
+    def wrenches(self, held: HeldMembers, force: Plane) -> Iterator[tuple[str, Wrench]]:
+        """Yield a `force` at a joint `held`, or along a guide; a drive's own part is no member."""
+        if self.name in held.carriers:
+            yield from held.force(self.name, force)
+        elif self.name in held.slides:
+            guide = held.slides[self.name]
+            unit = guide.along(held.known)
+            yield guide.on, unit.times(force)
+            yield guide.by, unit.times(-force)
 
 
 @dataclass(frozen=True)
@@ -127,6 +175,11 @@ class PointWay(ShortRepr, WorkCoordinate):
         along = known.frame(self.guide).direction.upto(order) * self.direction
         return dot(along, NamedCoordinate(self.point).rate(known, order))
 
+    def wrenches(self, held: HeldMembers, force: Plane) -> Iterator[tuple[str, Wrench]]:
+        """Yield the `force` at the point of a member that is `held`."""
+        along = held.known.direction(self.guide) * self.direction
+        yield from held.force(self.point, force * along)
+
 
 @dataclass(frozen=True)
 class MemberTurn(ShortRepr, WorkCoordinate):
@@ -159,6 +212,11 @@ class MemberTurn(ShortRepr, WorkCoordinate):
 
         return turn(self.member) if self.base == GROUND else turn(self.member) - turn(self.base)
 
+    def wrenches(self, held: HeldMembers, force: Plane) -> Iterator[tuple[str, Wrench]]:
+        """Yield the moment, `force`, on both members that are `held`."""
+        yield held.carriers[self.member], Wrench.couple(force.real)
+        yield held.carriers[self.base], Wrench.couple(-force.real)
+
 
 @dataclass(frozen=True)
 class JointDistance(ShortRepr, WorkCoordinate):
@@ -184,6 +242,13 @@ class JointDistance(ShortRepr, WorkCoordinate):
     def rate(self, known: Known, order: int) -> Jet:
         """Return its derivative, of what is `known`, to an `order`."""
         return self._distance(known, order + 1).differentiated()
+
+    def wrenches(self, held: HeldMembers, force: Plane) -> Iterator[tuple[str, Wrench]]:
+        """Yield the `force` at both joints `held`, which it pushes apart."""
+        way = held.known.place(self.second) - held.known.place(self.first)
+        along = force * way / np.abs(way)
+        yield from held.force(self.second, along)
+        yield from held.force(self.first, -along)
 
 
 class Acting:

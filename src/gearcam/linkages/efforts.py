@@ -18,9 +18,9 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.linkages.coordinates import Acting, NamedCoordinate, WorkCoordinate, WorkState
-from gearcam.linkages.elements import Known
+from gearcam.linkages.known import Known
 from gearcam.linkages.plane import dot, square
-from gearcam.numeric.arrays import Array, Mask
+from gearcam.numeric.arrays import Array, Mask, Plane
 from gearcam.numeric.jets import Jet
 
 LOADS, INERTIA, GRAVITY, SPRINGS = "loads", "inertia", "gravity", "springs"
@@ -97,11 +97,19 @@ class Effort(ABC):
         must drive.
         """
         way = self.coordinate.rate(state.displaced, state.order)
-        found = state.angle * 0.0 - dot(self.force(state), way)
+        return self._where_active(state.q, state.angle * 0.0 - dot(self.force(state), way))
+
+    def acting(self, state: WorkState) -> Plane:
+        """Return the force, N, or moment, N mm, where it acts, (n,)."""
+        found = self._where_active(state.q, self.force(state))
+        return np.asarray(found.c[0]) + np.zeros(state.q.shape, dtype=complex)
+
+    def _where_active(self, q: Array, values: Jet) -> Jet:
+        """Return values that are 0 where it does not act."""
         if self.active is None:
-            return found
-        acts = self.active.at(state.q)
-        return Jet([np.where(acts, one, 0.0) for one in found.c])
+            return values
+        acts = self.active.at(q)
+        return Jet([np.where(acts, one, 0.0) for one in values.c])
 
 
 @dataclass(frozen=True)

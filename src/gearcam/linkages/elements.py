@@ -9,63 +9,25 @@ from __future__ import annotations
 
 import cmath
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import ClassVar, Final, TypeVar
+from typing import ClassVar, Final
 
 import numpy as np
 
 from gearcam.base.display import ShortRepr
+from gearcam.linkages.bonds import Bond, Hinge, PushDrive, ShaftDrive, SlidingJoint
 from gearcam.linkages.dyads import DYADS, DyadType, Lengths, Passage, Sign, Solved
+from gearcam.linkages.known import GROUND, Known
 from gearcam.linkages.plane import Frame, towards
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet
 
-GROUND: Final = "ground"
-"""Name of the frame of what does not move."""
-
 Law = Callable[[Array, int], Jet]
 """``law(q, order)``: turn of a shaft, rad, or way of a slide, mm, over the driver's angle."""
 
-Given = Jet | Frame
-
-_T = TypeVar("_T", Jet, Frame)
-
-
-class Known:
-    """What is solved so far, at some angles of the driver.
-
-    Parameters
-    ----------
-    q : (n,) array, rad
-        Angles of the driver.
-    order : int
-        Highest derivative.
-    """
-
-    def __init__(self, q: Array, order: int) -> None:
-        self.q, self.order = q, order
-        self.given: dict[str, Given] = {}
-        self.solved: dict[str, Solved] = {}
-        self.given[GROUND] = Frame(self.constant(0j), self.constant(1 + 0j))
-
-    def constant(self, value: complex) -> Jet:
-        """Return the jet of a number."""
-        return Jet([np.full(self.q.shape, value), *[0.0] * self.order])
-
-    def jet(self, name: str) -> Jet:
-        """Return a joint or a quantity by name."""
-        return self._of(name, Jet)
-
-    def frame(self, name: str) -> Frame:
-        """Return a member or a guide by name."""
-        return self._of(name, Frame)
-
-    def _of(self, name: str, wanted: type[_T]) -> _T:
-        found = self.given[name]
-        if not isinstance(found, wanted):
-            raise TypeError(f"{name} is a {type(found).__name__}, not a {wanted.__name__}")
-        return found
+Carriers = Mapping[str, str]
+"""Members by the names of the joints, frames and members that are fixed to them."""
 
 
 class Element(ABC):
@@ -88,6 +50,28 @@ class Element(ABC):
     @abstractmethod
     def solve(self, known: Known) -> None:
         """Add what it gives to what is `known`."""
+
+    def carried(self, carriers: Carriers) -> Carriers:
+        """Return on which members the joints and frames are that it gives.
+
+        Parameters
+        ----------
+        carriers : mapping of str to str
+            The same of what it needs.
+        """
+        del carriers
+        return {}
+
+    def bonds(self, carriers: Carriers) -> Iterator[Bond]:
+        """Yield what joins its members to others, and drives them.
+
+        Parameters
+        ----------
+        carriers : mapping of str to str
+            Members of the joints and frames that it needs and gives.
+        """
+        del carriers
+        yield from ()
 
     def knots_with(self, track: Callable[[str, Array, int], Jet], knots: Array) -> Array:
         """Return the knots of its linkage with its own: where its motion is not smooth.
@@ -160,6 +144,10 @@ class MemberPoint(ShortRepr, Element):
         """Add the point."""
         known.given[self.name] = known.frame(self.on).at(self.at)
 
+    def carried(self, carriers: Carriers) -> Carriers:
+        """Return its member (see `Element`)."""
+        return {self.name: carriers[self.on]}
+
 
 @dataclass(frozen=True)
 class GuideLine(ShortRepr, Element):
@@ -189,6 +177,10 @@ class GuideLine(ShortRepr, Element):
         carrier = known.frame(self.on)
         direction = carrier.direction * cmath.exp(1j * self.direction)
         known.given[self.name] = Frame(carrier.at(self.at), direction)
+
+    def carried(self, carriers: Carriers) -> Carriers:
+        """Return its member (see `Element`)."""
+        return {self.name: carriers[self.on]}
 
 
 @dataclass(frozen=True)
@@ -227,6 +219,17 @@ class Crank(ShortRepr, Element):
         frame = Frame(known.jet(self.center), direction)
         known.given[self.name] = frame
         known.given[self.joint] = frame.at(complex(self.length))
+
+    def carried(self, carriers: Carriers) -> Carriers:
+        """Return itself (see `Element`)."""
+        del carriers
+        return {self.name: self.name, self.joint: self.name}
+
+    def bonds(self, carriers: Carriers) -> Iterator[Bond]:
+        """Yield its bearing and its shaft (see `Element`)."""
+        ends = {"on": self.name, "by": carriers[self.center]}
+        yield Hinge(name=self.center, place=self.center, **ends)
+        yield ShaftDrive(name=self.shaft, shaft=self.shaft, **ends)
 
 
 @dataclass(frozen=True)
@@ -284,6 +287,17 @@ class PushedSlide(ShortRepr, Element):
         place = guide.origin + guide.direction * known.jet(self.way)
         known.given[self.name] = Frame(place, guide.direction)
         known.given[self.joint] = place
+
+    def carried(self, carriers: Carriers) -> Carriers:
+        """Return itself (see `Element`)."""
+        del carriers
+        return {self.name: self.name, self.joint: self.name}
+
+    def bonds(self, carriers: Carriers) -> Iterator[Bond]:
+        """Yield its guide and what pushes it (see `Element`)."""
+        ends = {"on": self.name, "by": carriers[self.guide], "place": self.joint}
+        yield SlidingJoint(name=self.guide, guide=self.guide, slide=self.way, **ends)
+        yield PushDrive(name=self.way, guide=self.guide, way=self.way, **ends)
 
 
 _ROUNDING: Final = 1e-12
@@ -411,3 +425,34 @@ class Dyad(ShortRepr, Element):
         known.given[self.joint] = solved.joint
         known.given |= dict(zip(self.members, solved.frames, strict=True))
         known.given |= {f"{self.joint}.{name}": one for name, one in solved.slides.items()}
+
+    @property
+    def _guiding(self) -> int | None:
+        """Index of the member along which the other one slides; None with a hinge between them."""
+        return next((k for k in (0, 1) if f"member{k + 1}" in self.kind.slides), None)
+
+    def carried(self, carriers: Carriers) -> Carriers:
+        """Return its members; the joint between is on the first one, or on what slides."""
+        del carriers
+        last = self._guiding == 0 or (self._guiding is None and self.kind.guides == (False, True))
+        own = self.members[1 if last else 0]
+        return {self.joint: own, **{one: one for one in self.members}}
+
+    def bonds(self, carriers: Carriers) -> Iterator[Bond]:
+        """Yield its three joints (see `Element`)."""
+        ends = zip(self.members, (self.first, self.second), self.kind.guides, strict=True)
+        for number, (member, end, guided) in enumerate(ends, start=1):
+            own = {"name": end, "on": member, "by": carriers[end]}
+            if guided:
+                slide = f"{self.joint}.guide{number}"
+                yield SlidingJoint(guide=end, place=member, slide=slide, **own)
+            else:
+                yield Hinge(place=end, **own)
+        (first, second), guiding = self.members, self._guiding
+        if guiding is None:
+            own = {"name": self.joint, "place": self.joint}
+            yield Hinge(on=second, by=first, driven=self.driven or "", **own)
+        else:
+            guide, slider = self.members[guiding], self.members[1 - guiding]
+            own = {"name": self.joint, "place": self.joint, "on": slider, "by": guide}
+            yield SlidingJoint(guide=guide, slide=f"{self.joint}.member{guiding + 1}", **own)

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from typing import Final
@@ -23,7 +23,9 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.linkages.elements import Element, Known, Law
+from gearcam.linkages.bonds import Bond, Hinge, SlotPin
+from gearcam.linkages.elements import Carriers, Element, Law
+from gearcam.linkages.known import Known
 from gearcam.linkages.measures import TrackMeasures
 from gearcam.linkages.plane import Frame, towards
 from gearcam.numeric import jets
@@ -195,3 +197,23 @@ class GenevaWheel(ShortRepr, Element):
         origin = known.jet(self.center) + self.distance * ahead
         known.given[self.name] = Frame(origin, towards(turn) * -ahead)
         known.given[f"{self.name}.turn"] = turn
+
+    def carried(self, carriers: Carriers) -> Carriers:
+        """Return the wheel (see `Element`)."""
+        del carriers
+        return {self.name: self.name}
+
+    def bonds(self, carriers: Carriers) -> Iterator[Bond]:
+        """Yield the wheel's bearing and the pin (see `Element`)."""
+        by = carriers[self.center]
+        yield Hinge(name=f"{self.name}.center", on=self.name, by=by, place=self.name)
+        yield SlotPin(
+            name=f"{self.name}.pin",
+            on=self.name,
+            by=by,
+            center=self.center,
+            length=self.length,
+            start=self.start,
+            shaft=self.shaft,
+            turn=f"{self.name}.turn",
+        )

@@ -11,7 +11,8 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.linkages.elements import GROUND, Dyad, Element, Known
+from gearcam.linkages.elements import Dyad, Element
+from gearcam.linkages.known import GROUND, Known
 from gearcam.linkages.plane import conjugate, imaginary, real, rotation
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet

@@ -24,7 +24,8 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from gearcam.linkages.dyads import rtr_reach
-from gearcam.linkages.elements import Dyad, Known
+from gearcam.linkages.elements import Dyad
+from gearcam.linkages.known import Known
 from gearcam.linkages.linkage import Linkage
 from gearcam.linkages.measures import Peak, TrackMeasures
 from gearcam.linkages.plane import cross, dot, square

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from gearcam.base.display import ShortRepr
 from gearcam.kinds.mechanism.keys import Sort, named
 from gearcam.kinds.mechanism.parts.part import MachinePart, Setting
-from gearcam.linkages.elements import Element, Known
+from gearcam.linkages.elements import Element
+from gearcam.linkages.known import Known
 
 
 @dataclass(frozen=True)

@@ -94,6 +94,7 @@ def test_rounded_edges_have_the_radius_asked_for_on_the_part_as_made() -> None:
     assert part.contour.moments.area == pytest.approx(18.0**2 - (4 - math.pi) * 2.0**2, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_too_much_clearance_is_refused_with_what_leaves_an_outline() -> None:
     contour = gear_contour(12, 5.0)
     with pytest.raises(InfeasibleError, match="this clearance leaves no simple outline") as one:

@@ -233,6 +233,7 @@ def test_the_pin_stays_in_its_slot_all_the_way(wheel: int, travel: float) -> Non
         assert not grown.contains(seat(phi))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("wheel", few([1, 2]))
 def test_the_ends_of_a_long_slot_do_not_meet(wheel: int) -> None:
     """On a disc of 100 mm: room to the edge, 50 - r, and to the other end, r*sin(travel/2)."""

@@ -57,6 +57,7 @@ def test_a_ring_is_what_lies_between_its_roots_and_a_circle() -> None:
     assert picture.count("Z") == 3, "outside, teeth, mark"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", chosen({"uneven": UNEVEN, "waist": WAIST}, "waist"))
 def test_an_outside_that_follows_is_a_true_parallel(law: Any) -> None:
     """Steiner: a parallel at d of a smooth closed curve has the area A + L*d + pi*d^2."""

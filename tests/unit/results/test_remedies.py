@@ -395,6 +395,7 @@ def test_a_larger_cam_is_no_remedy_for_chords_that_are_too_fine(tmp_path: Path) 
     gearcam.build(found[0].design).write(tmp_path / "out")
 
 
+@pytest.mark.slow
 def test_no_values_that_help_are_sought_for_candidates(monkeypatch: pytest.MonkeyPatch) -> None:
     """Searches and records look at codes and numbers of findings, which are the same without."""
     design = gearcam.load(PROFILES / "undercut_cam.toml")

@@ -123,6 +123,7 @@ def test_a_clearance_is_half_to_each_side(angle: float) -> None:
     assert (made ^ roller(cam, angle, 0.5 * PLAY + error + 1e-4)).volume() > 1e-4
 
 
+@pytest.mark.slow
 def test_the_backlash_at_rest() -> None:
     """The rollers are clear while the turret turns by less than half its backlash."""
     changes = {"cam.roller_clearance_mm": PLAY, "cam.length_mm": 46, "output.wall_step_deg": 5}

@@ -126,6 +126,7 @@ def test_two_rollers_embrace_a_rib() -> None:
         assert min(overlaps(moved, cam, 10, 1.1 * error)) > 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("side", few([1, -1]))
 def test_a_wall_that_is_off_by_5_um_is_found(side: int) -> None:
     cam = reference(height=15.0)

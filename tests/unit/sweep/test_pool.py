@@ -46,6 +46,7 @@ def test_a_variant_that_ends_its_process_once_is_built_once_more(tmp_path: Path)
     assert not any(row.refusal for row in found.values())
 
 
+@pytest.mark.slow
 def test_a_variant_that_ends_its_process_twice_costs_only_itself() -> None:
     found = rows(deeds("work", "die", "work", "work", "die"))
     assert [bool(found[k].refusal) for k in range(5)] == [False, True, False, False, True]

@@ -29,7 +29,7 @@ from gearcam.kinds.mechanism.keys import (
 from gearcam.kinds.mechanism.parts import PARTS
 from gearcam.kinds.mechanism.parts.action import Acted, MachineAction
 from gearcam.kinds.mechanism.parts.part import MachinePart
-from gearcam.linkages.elements import GROUND
+from gearcam.linkages.known import GROUND
 
 if TYPE_CHECKING:
     from gearcam.designs.kind import Examined

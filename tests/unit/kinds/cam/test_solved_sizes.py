@@ -132,6 +132,7 @@ def evolved(cost: Any, bounds: list[tuple[float, float]]) -> float:
 CASES = [*((stem, name) for name in PROGRAMS), *((arm, name) for name in PROGRAMS)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("make", "name"), chosen(CASES, (arm, "polynomial")))
 def test_no_other_optimiser_finds_a_smaller_cam(make: Any, name: str) -> None:
     result = built(gc.design(make(name)))
@@ -289,6 +290,7 @@ def least_base(program: Any, radius: float) -> float:
     return radius - float(min((s + second).min(), at_ends.min()))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "numbers", chosen([range(4), *(range(k, k + 10) for k in range(0, 400, 10))], range(4))
 )
@@ -592,6 +594,7 @@ def loaded(document: dict[str, Any], most: float, **tables: Any) -> dict[str, An
     } | tables  # fmt: skip
 
 
+@pytest.mark.slow
 def test_the_base_radius_of_a_face_under_a_contact_pressure_is_the_closed_form() -> None:
     document = stem("cycloidal", cam={"base_radius_mm": "solve", "thickness_mm": 12.0})
     document["follower"] = {"type": "flat"}

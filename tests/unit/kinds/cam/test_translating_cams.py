@@ -147,6 +147,7 @@ def test_charts_go_along_the_way() -> None:
         assert chart.lines[0].x[-1] == pytest.approx(170.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("depth", few([8.0, None]))
 def test_the_solid_is_the_plate_less_its_groove(depth: float | None) -> None:
     result = built(PLATE, *([] if depth else [(DEEP, "")]))

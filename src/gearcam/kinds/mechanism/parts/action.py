@@ -24,7 +24,8 @@ from gearcam.linkages.coordinates import (
     WorkCoordinate,
     WorkState,
 )
-from gearcam.linkages.elements import GROUND, Element
+from gearcam.linkages.elements import Element
+from gearcam.linkages.known import GROUND
 from gearcam.linkages.measures import TrackMeasures
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet

@@ -25,7 +25,7 @@ from gearcam.linkages.chain import LeverChain, roots_in
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.parts.picture import Picture
     from gearcam.linkages.closing import NotClosingError
-    from gearcam.linkages.elements import Known
+    from gearcam.linkages.known import Known
     from gearcam.linkages.linkage import Linkage
 
 NEAR: Final = 1e-3

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from gearcam.base.rules import Breach
 from gearcam.kinds.mechanism.keys import STANDING, Sort, angle_param, named, point_param
 from gearcam.kinds.mechanism.parts.part import MachinePart, Setting
-from gearcam.linkages.elements import GROUND, GuideLine
+from gearcam.linkages.elements import GuideLine
+from gearcam.linkages.known import GROUND
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.parts.picture import Picture

@@ -17,7 +17,7 @@ from typing import Any, Final
 import numpy as np
 
 from gearcam.kinds.mechanism.parts.setting import Setting
-from gearcam.linkages.elements import Known
+from gearcam.linkages.known import Known
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.pose import Pose
 from gearcam.parts.shapes import Circle

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from gearcam.kinds.mechanism.keys import Sort, named, point_param
 from gearcam.kinds.mechanism.parts.part import MachinePart, Setting
-from gearcam.linkages.elements import GROUND, MemberPoint
+from gearcam.linkages.elements import MemberPoint
+from gearcam.linkages.known import GROUND
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.parts.picture import Picture

@@ -35,7 +35,7 @@ from gearcam.linkages.coordinates import (
     WorkState,
 )
 from gearcam.linkages.efforts import SPRINGS, AppliedForce, Effort, ForceLaw
-from gearcam.linkages.elements import GROUND
+from gearcam.linkages.known import GROUND
 from gearcam.numeric.piecewise import places_between
 
 if TYPE_CHECKING:

@@ -1,0 +1,293 @@
+"""Forces in the joints of a linkage: the equilibrium of every member.
+
+At each angle of the driver the loads, weights, springs and inertia forces of each member are in
+equilibrium with what its joints and its drive exert: two equations of forces and one of moments.
+A crank has two unknowns of its bearing and its shaft's moment, a dyad with two members six in its
+three joints, so that all are known; the equations of all members are solved together.
+
+The moment that the drives exert then, over the turn of the driver, is found a second time by
+virtual work (see `gearcam.linkages.work`), without any reaction: the difference is an error
+estimate of both.
+
+Friction (see `gearcam.linkages.friction`) depends on the reactions: Newton's method solves for all
+of them. Where the determinant of its last step has another sign than without friction, the machine
+is locked: no moment of the driver moves it.
+
+Sources: 000, sections 2.2.2 to 2.2.4.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+
+from gearcam.base.display import ShortRepr
+from gearcam.linkages.bonds import Bond, SlidingJoint, Wrench
+from gearcam.linkages.coordinates import HeldMembers, WorkState
+from gearcam.linkages.efforts import Effort
+from gearcam.linkages.elements import Carriers
+from gearcam.linkages.friction import Friction
+from gearcam.linkages.known import GROUND, Known
+from gearcam.linkages.linkage import Linkage
+from gearcam.numeric.arrays import Array, Mask, Plane
+
+_STEPS: Final = 50
+"""Largest number of Newton steps with friction: five are usual."""
+
+_SETTLED: Final = 1e-12
+"""Change of the reactions, over the largest, at which they are known."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Structure(ShortRepr):
+    """What a linkage is made of: its members and what joins them.
+
+    Parameters
+    ----------
+    carriers : mapping of str to str
+        Members by what is fixed to them.
+    bonds : tuple of Bond
+        Joints and drives.
+    """
+
+    carriers: Carriers
+    bonds: tuple[Bond, ...]
+
+    @classmethod
+    def of(cls, linkage: Linkage) -> Structure:
+        """Return that of a linkage."""
+        carriers: dict[str, str] = {GROUND: GROUND}
+        bonds: list[Bond] = []
+        for element in linkage.elements:
+            carriers |= element.carried(carriers)
+            bonds += element.bonds(carriers)
+        return cls(carriers=carriers, bonds=tuple(bonds))
+
+    @cached_property
+    def members(self) -> tuple[str, ...]:
+        """Names of the members that move."""
+        return tuple(dict.fromkeys(one.on for one in self.bonds))
+
+    @cached_property
+    def slides(self) -> dict[str, SlidingJoint]:
+        """Guides by the quantities that are places on them."""
+        return {one.slide: one for one in self.bonds if isinstance(one, SlidingJoint)}
+
+    @cached_property
+    def columns(self) -> dict[Bond, slice]:
+        """Which unknowns are those of each bond."""
+        ends = np.cumsum([0, *(len(one.unknowns) for one in self.bonds)]).tolist()
+        return {one: slice(*ends[k : k + 2]) for k, one in enumerate(self.bonds)}
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Reactions(ShortRepr):
+    """Forces in the joints of a linkage at n angles of the driver.
+
+    Parameters
+    ----------
+    structure : Structure
+        Members and bonds.
+    known : Known
+        The motion.
+    values : (n, u) array, N and N mm
+        The unknowns of all bonds; nan where friction locks.
+    moment : (n,) array, N mm
+        The driver's moment, from what its drives exert.
+    work : (n,) array, N mm
+        The same without friction, by virtual work.
+    lost : (n,) array, N mm
+        Work lost to friction per rad of the driver.
+    room : (n,) array
+        Determinant of the equilibrium with friction over that without: 1 without friction, 0 and
+        less where the machine is locked.
+    """
+
+    structure: Structure
+    known: Known
+    values: Array
+    moment: Array
+    work: Array
+    lost: Array
+    room: Array
+
+    def of(self, bond: Bond) -> Array:
+        """Return the unknowns of a bond, (n, k)."""
+        return self.values[:, self.structure.columns[bond]]
+
+    def force(self, bond: Bond) -> Plane:
+        """Return the force of a bond on its member, (n,), N, in the machine's frame."""
+        return self._summed(bond)[0]
+
+    def _summed(self, bond: Bond) -> Wrench:
+        units, own = bond.units(self.known), self.of(bond).T
+        parts = [unit.times(one) for unit, one in zip(units, own, strict=True)]
+        return Wrench(*(sum(each) for each in zip(*parts, strict=True)))
+
+    @property
+    def locked(self) -> Mask:
+        """Where friction locks the machine, (n,)."""
+        return ~(self.room > 0.0)
+
+    @property
+    def apart(self) -> float:
+        """Largest difference of the driver's moment from virtual work and losses, over the largest.
+
+        An error estimate of all forces.
+        """
+        free = ~self.locked
+        off = np.abs(self.moment - self.work - self.lost)[free]
+        most = np.abs(np.stack([self.moment, self.work, self.lost]))[:, free].max(initial=0.0)
+        return float(off.max(initial=0.0) / most) if most else 0.0
+
+
+class UnheldError(ValueError):
+    """A linkage in which some forces are not known.
+
+    Parameters
+    ----------
+    name : str
+        Of a member or joint on which a force acts, but which nothing holds.
+    """
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        super().__init__(name)
+
+
+def reactions(
+    linkage: Linkage,
+    efforts: Sequence[Effort],
+    q: Array,
+    *,
+    speed: float | None = None,
+    friction: Mapping[str, Friction[Any]] | None = None,
+) -> Reactions:
+    """Return the forces in the joints of a linkage.
+
+    Parameters
+    ----------
+    linkage : Linkage
+        The linkage.
+    efforts : sequence of Effort
+        What acts on it.
+    q : (n,) array, rad
+        The driver's angles.
+    speed : float, rad/s, optional
+        Of the driver.
+    friction : mapping of str to Friction, optional
+        By names of bonds.
+
+    Returns
+    -------
+    Reactions
+
+    Raises
+    ------
+    UnheldError
+        If a force acts on what no member carries, as a point of another package's part.
+    """
+    structure = Structure.of(linkage)
+    state = WorkState(linkage, np.asarray(q, dtype=float), 0, speed)
+    held = HeldMembers(state.known, structure.carriers, structure.slides)
+    equilibrium = _Equilibrium(structure, state.known)
+    loads, moment = equilibrium.loads(efforts, state, held)
+    pairs = [(one, friction[one.name]) for one in structure.bonds if one.name in (friction or {})]
+    free = equilibrium.solved(loads)
+    values, room, lost = equilibrium.rubbing(free, loads, pairs)
+    works = np.stack([one for bond in structure.bonds for one in bond.works(state.known)], axis=1)
+    balances = [np.asarray(one.balance(state).c[0]) for one in efforts]
+    return Reactions(
+        structure=structure,
+        known=state.known,
+        values=values,
+        moment=(values * works).sum(axis=1) - moment,
+        work=sum(balances, start=np.zeros(state.q.shape)),
+        lost=lost,
+        room=room,
+    )
+
+
+class _Equilibrium:
+    """The equations of all members: three rows each, a column for each unknown.
+
+    Moments are over a length, so that all numbers are of the size of forces.
+    """
+
+    def __init__(self, structure: Structure, known: Known) -> None:
+        self.structure, self.known = structure, known
+        self.rows = {name: 3 * k for k, name in enumerate(structure.members)}
+        count = sum(len(one.unknowns) for one in structure.bonds)
+        if count != 3 * len(self.rows):
+            raise UnheldError(structure.members[-1])
+        places = [np.abs(known.place(name)).max() for name in structure.members]
+        self.size = max(1.0, float(np.max(places)))
+        self.matrix = np.zeros((len(known.q), count, count))
+        for bond, columns in structure.columns.items():
+            for k, unit in enumerate(bond.units(known), start=columns.start):
+                self._add(self.matrix[:, :, k], bond, unit)
+
+    def _put(self, rows: Array, member: str, wrench: Wrench) -> None:
+        """Add a wrench on a member to its `rows`, (n, r); what holds the frame is not told."""
+        if member == GROUND:
+            return
+        row = self.rows[member]
+        rows[:, row] += wrench.force.real
+        rows[:, row + 1] += wrench.force.imag
+        rows[:, row + 2] += wrench.moment / self.size
+
+    def _add(self, rows: Array, bond: Bond, wrench: Wrench) -> None:
+        self._put(rows, bond.on, wrench)
+        self._put(rows, bond.by, wrench.times(np.array(-1.0)))
+
+    def loads(
+        self, efforts: Sequence[Effort], state: WorkState, held: HeldMembers
+    ) -> tuple[Array, Array]:
+        """Return what acts on the members, (n, r), and the work of what acts on drives, (n,)."""
+        found, moment = np.zeros(self.matrix.shape[:2]), np.zeros(state.q.shape)
+        for effort in efforts:
+            force, parts = effort.acting(state), None
+            for member, wrench in effort.coordinate.wrenches(held, force):
+                self._put(found, member, wrench)
+                parts = member
+            if parts is None:
+                rate = np.asarray(effort.coordinate.rate(state.known, 0).c[0])
+                moment += (np.conj(force) * rate).real
+        return found, moment
+
+    def solved(self, loads: Array) -> Array:
+        """Return the unknowns without friction, (n, u)."""
+        made: Array = np.linalg.solve(self.matrix, -loads[..., None])[..., 0]
+        return made
+
+    def rubbing(
+        self, free: Array, loads: Array, pairs: Sequence[tuple[Bond, Friction[Any]]]
+    ) -> tuple[Array, Array, Array]:
+        """Return the unknowns with friction, what is left of the determinant, and the work lost."""
+        values, room = free, np.ones(len(free))
+        if not pairs:
+            return values, room, np.zeros(len(free))
+        plain = np.linalg.slogdet(self.matrix)
+        columns = self.structure.columns
+        for _ in range(_STEPS):
+            tangent, rest, lost = self.matrix.copy(), loads.copy(), np.zeros(len(free))
+            for bond, one in pairs:
+                own = columns[bond]
+                found = one.of(bond, self.known, values[:, own])
+                column = np.zeros(loads.shape)
+                self._add(column, bond, found.unit)
+                rest += column * found.size[:, None]
+                tangent[:, :, own] += column[:, :, None] * found.slopes[:, None, :]
+                lost += found.lost
+            residual = (self.matrix @ values[..., None])[..., 0] + rest
+            step = np.linalg.solve(tangent, -residual[..., None])[..., 0]
+            values = values + step
+            if (np.abs(step).max(axis=1) <= _SETTLED * np.abs(values).max(axis=1)).all():
+                break
+        signs, sizes = np.linalg.slogdet(tangent)
+        room = signs * plain[0] * np.exp(sizes - plain[1])
+        return np.where(room[:, None] > 0.0, values, np.nan), room, lost
