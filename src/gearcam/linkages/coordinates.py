@@ -137,8 +137,8 @@ class NamedCoordinate(ShortRepr, WorkCoordinate):
         elif self.name in held.slides:
             guide = held.slides[self.name]
             unit = guide.along(held.known)
-            yield guide.on, unit.times(force)
-            yield guide.by, unit.times(-force)
+            yield guide.on, unit.times(force.real)
+            yield guide.by, unit.times(-force.real)
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ Source: 000, section 2.2.3.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
@@ -48,6 +48,10 @@ class Friction(ShortRepr, ABC, Generic[_Joint]):
     """Friction of a joint."""
 
     @abstractmethod
+    def times(self, share: float) -> Friction[_Joint]:
+        """Return the same with a `share` of its coefficient."""
+
+    @abstractmethod
     def of(self, joint: _Joint, known: Known, own: Array) -> Rubbing:
         """Return its friction.
 
@@ -77,6 +81,10 @@ class JournalFriction(Friction[Hinge]):
     coefficient: float
     radius: float
 
+    def times(self, share: float) -> JournalFriction:
+        """Return the same with a `share` of its coefficient."""
+        return replace(self, coefficient=share * self.coefficient)
+
     @property
     def circle(self) -> float:
         """Radius of the friction circle, mm, which the force of the joint touches."""
@@ -105,6 +113,10 @@ class GuideFriction(Friction[SlidingJoint]):
 
     coefficient: float
     length: float = np.inf
+
+    def times(self, share: float) -> GuideFriction:
+        """Return the same with a `share` of its coefficient."""
+        return replace(self, coefficient=share * self.coefficient)
 
     def of(self, joint: SlidingJoint, known: Known, own: Array) -> Rubbing:
         """Return the force along a `joint` with normal force and couple `own`, at `known`."""

@@ -121,12 +121,9 @@ class Reactions(ShortRepr):
 
     def force(self, bond: Bond) -> Plane:
         """Return the force of a bond on its member, (n,), N, in the machine's frame."""
-        return self._summed(bond)[0]
-
-    def _summed(self, bond: Bond) -> Wrench:
         units, own = bond.units(self.known), self.of(bond).T
-        parts = [unit.times(one) for unit, one in zip(units, own, strict=True)]
-        return Wrench(*(sum(each) for each in zip(*parts, strict=True)))
+        parts = [unit.force * one for unit, one in zip(units, own, strict=True)]
+        return np.sum(parts, axis=0)
 
     @property
     def locked(self) -> Mask:
@@ -196,7 +193,8 @@ def reactions(
     held = HeldMembers(state.known, structure.carriers, structure.slides)
     equilibrium = _Equilibrium(structure, state.known)
     loads, moment = equilibrium.loads(efforts, state, held)
-    pairs = [(one, friction[one.name]) for one in structure.bonds if one.name in (friction or {})]
+    given = friction or {}
+    pairs = [(one, given[one.name]) for one in structure.bonds if one.name in given]
     free = equilibrium.solved(loads)
     values, room, lost = equilibrium.rubbing(free, loads, pairs)
     works = np.stack([one for bond in structure.bonds for one in bond.works(state.known)], axis=1)
@@ -225,7 +223,7 @@ class _Equilibrium:
         if count != 3 * len(self.rows):
             raise UnheldError(structure.members[-1])
         places = [np.abs(known.place(name)).max() for name in structure.members]
-        self.size = max(1.0, float(np.max(places)))
+        self.size = max(1.0, *map(float, places))
         self.matrix = np.zeros((len(known.q), count, count))
         for bond, columns in structure.columns.items():
             for k, unit in enumerate(bond.units(known), start=columns.start):
@@ -250,13 +248,13 @@ class _Equilibrium:
         """Return what acts on the members, (n, r), and the work of what acts on drives, (n,)."""
         found, moment = np.zeros(self.matrix.shape[:2]), np.zeros(state.q.shape)
         for effort in efforts:
-            force, parts = effort.acting(state), None
-            for member, wrench in effort.coordinate.wrenches(held, force):
+            force = effort.acting(state)
+            parts = list(effort.coordinate.wrenches(held, force))
+            for member, wrench in parts:
                 self._put(found, member, wrench)
-                parts = member
-            if parts is None:
-                rate = np.asarray(effort.coordinate.rate(state.known, 0).c[0])
-                moment += (np.conj(force) * rate).real
+            if not parts:
+                rate: Array = np.asarray(effort.coordinate.rate(state.known, 0).c[0])
+                moment += force.real * rate
         return found, moment
 
     def solved(self, loads: Array) -> Array:
@@ -268,15 +266,11 @@ class _Equilibrium:
         self, free: Array, loads: Array, pairs: Sequence[tuple[Bond, Friction[Any]]]
     ) -> tuple[Array, Array, Array]:
         """Return the unknowns with friction, what is left of the determinant, and the work lost."""
-        values, room = free, np.ones(len(free))
-        if not pairs:
-            return values, room, np.zeros(len(free))
-        plain = np.linalg.slogdet(self.matrix)
-        columns = self.structure.columns
-        for _ in range(_STEPS):
+        values, lost, tangent = free, np.zeros(len(free)), self.matrix
+        for _ in range(_STEPS if pairs else 0):
             tangent, rest, lost = self.matrix.copy(), loads.copy(), np.zeros(len(free))
             for bond, one in pairs:
-                own = columns[bond]
+                own = self.structure.columns[bond]
                 found = one.of(bond, self.known, values[:, own])
                 column = np.zeros(loads.shape)
                 self._add(column, bond, found.unit)
@@ -288,6 +282,6 @@ class _Equilibrium:
             values = values + step
             if (np.abs(step).max(axis=1) <= _SETTLED * np.abs(values).max(axis=1)).all():
                 break
-        signs, sizes = np.linalg.slogdet(tangent)
-        room = signs * plain[0] * np.exp(sizes - plain[1])
+        (sign, size), (plain, whole) = map(np.linalg.slogdet, (tangent, self.matrix))
+        room = sign * plain * np.exp(size - whole)
         return np.where(room[:, None] > 0.0, values, np.nan), room, lost

@@ -23,7 +23,7 @@ from gearcam.kinds.mechanism import drives, names, parts
 from gearcam.kinds.mechanism.asked import TABLES, DwellSpec, IntervalSpec, StretchSpec
 from gearcam.kinds.mechanism.drives import CompareSpec, MachineDrive
 from gearcam.kinds.mechanism.keys import NAME
-from gearcam.kinds.shared import ACCURACY, AccuracySpec, GoalSpec
+from gearcam.kinds.shared import ACCURACY, AccuracySpec, ForcesSpec, GoalSpec
 from gearcam.mechanics.mass import GravitySpec
 from gearcam.results.kind import Kind, Study, studies_of
 
@@ -45,6 +45,16 @@ STUDIES: Final = studies_of(
         compute=deferred(f"{_HERE}.torque:study_torque"),
         demand=deferred(f"{_HERE}.torque:demand"),
         repeats=("loads-unused",),  # it uses them
+    ),
+    Study(
+        name="forces",
+        key="forces",
+        doc="Compute the forces in joints and guides, with friction; write DIR/NAME/forces.csv.",
+        done="computed",
+        table="forces",
+        compute=deferred(f"{_HERE}.forces:study_forces"),
+        demand=deferred(f"{_HERE}.torque:demand"),
+        repeats=("loads-unused",),
     ),
     ACCURACY,
 )
@@ -172,8 +182,14 @@ class MechanismDesign(Design):
         Masses of its members.
     spring : sequence of MachineSpring
         Its springs and dampers.
+    bearing : sequence of BearingSpec
+        Friction of single hinges and guides.
+    friction : MachineFrictionSpec
+        Friction of all others.
     gravity : GravitySpec
         The direction of gravity.
+    forces : ForcesSpec
+        Settings of the study of the forces in joints.
     torque : TorqueSpec
         Settings of the study of the driver's moment.
     output : MechanismOutput
@@ -213,7 +229,10 @@ class MechanismDesign(Design):
     load: tuple[parts.MachineLoad, ...] = ()
     mass: tuple[parts.MemberMass, ...] = ()
     spring: tuple[parts.MachineSpring, ...] = ()
+    bearing: tuple[parts.BearingSpec, ...] = ()
+    friction: parts.MachineFrictionSpec = field(default_factory=parts.MachineFrictionSpec)
     gravity: GravitySpec = field(default_factory=GravitySpec)
+    forces: ForcesSpec = field(default_factory=ForcesSpec)
     torque: TorqueSpec = field(default_factory=TorqueSpec)
     output: MechanismOutput = field(default_factory=MechanismOutput)
     accuracy: AccuracySpec = field(default_factory=AccuracySpec)
@@ -235,8 +254,8 @@ KIND: Final = Kind(
     result=deferred(f"{_HERE}.result:MechanismResult"),
     required=("drive",),
     problems=_problems,
-    check_modules=("gearcam.linkages.checks", f"{_HERE}.torque"),
-    check_groups=("mechanisms", TABLES, "torque of a mechanism"),
+    check_modules=("gearcam.linkages.checks", f"{_HERE}.torque", f"{_HERE}.force_checks"),
+    check_groups=("mechanisms", TABLES, "torque of a mechanism", "forces of a mechanism"),
     example={
         "drive": [{"name": "motor", "even": True, "speed_rpm": 60}],
         "joint": [{"name": "D", "at_mm": [110, 0]}],

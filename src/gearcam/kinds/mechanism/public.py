@@ -6,18 +6,22 @@ from gearcam.kinds.mechanism.asked import DwellSpec, IntervalSpec, StretchSpec
 from gearcam.kinds.mechanism.design import MechanismDesign, MechanismOutput, TorqueSpec
 from gearcam.kinds.mechanism.drives import CompareSpec, MachineDrive
 from gearcam.kinds.mechanism.parts import ACTIONS, PARTS
+from gearcam.kinds.mechanism.parts.friction import BearingSpec, MachineFrictionSpec
 from gearcam.kinds.mechanism.result import MechanismResult
-from gearcam.kinds.shared import AccuracySpec, GoalSpec
+from gearcam.kinds.shared import AccuracySpec, ForcesSpec, GoalSpec
 from gearcam.mechanics.mass import GravitySpec
 
 __all__ = [
     "AccuracySpec",
+    "BearingSpec",
     "CompareSpec",
     "DwellSpec",
+    "ForcesSpec",
     "GoalSpec",
     "GravitySpec",
     "IntervalSpec",
     "MachineDrive",
+    "MachineFrictionSpec",
     "MechanismDesign",
     "MechanismOutput",
     "MechanismResult",

@@ -12,6 +12,7 @@ from gearcam.kinds.mechanism.parts.action import MachineAction
 from gearcam.kinds.mechanism.parts.chain import ChainSpec
 from gearcam.kinds.mechanism.parts.crank import CrankSpec
 from gearcam.kinds.mechanism.parts.dyad import DyadSpec
+from gearcam.kinds.mechanism.parts.friction import BearingSpec, MachineFrictionSpec
 from gearcam.kinds.mechanism.parts.geneva import GenevaSpec
 from gearcam.kinds.mechanism.parts.guide import GuideSpec
 from gearcam.kinds.mechanism.parts.hoist import HoistSpec
@@ -24,6 +25,7 @@ from gearcam.kinds.mechanism.parts.slide import SlideSpec
 from gearcam.kinds.mechanism.parts.spring import MachineSpring
 
 __all__ = [
+    "BearingSpec",
     "ChainSpec",
     "CrankSpec",
     "DyadSpec",
@@ -31,6 +33,7 @@ __all__ = [
     "GuideSpec",
     "HoistSpec",
     "JointSpec",
+    "MachineFrictionSpec",
     "MachineLoad",
     "MachineSpring",
     "MemberMass",

@@ -177,13 +177,13 @@ class MachineAction(WithNames):
 def loads_unused(result: Any, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Note loads, masses and springs that nothing uses.
 
-    Looks at: whether the study of the driver's moment is asked for.
+    Looks at: whether the study of the driver's moment, or that of forces is asked for.
     """
     several = {title: one for title, one in vars(result.design).items() if isinstance(one, tuple)}
     given = [title for title, one in several.items() if one and isinstance(one[0], MachineAction)]
-    if given and "torque" not in result.design.output.studies:
+    if given and not {"torque", "forces"} & {*result.design.output.studies}:
         yield Remark(
-            "Only the study of the driver's moment uses loads, masses and springs: "
-            'gearcam torque FILE, or studies = ["torque"].',
+            "Only the studies of torque and forces use loads, masses and springs: "
+            'gearcam torque FILE, gearcam forces FILE, or studies = ["torque", "forces"].',
             ", ".join(given),
         )

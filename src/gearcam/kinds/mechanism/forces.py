@@ -1,0 +1,380 @@
+"""The study of the forces in a mechanism's joints, with friction."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from gearcam.base.errors import DesignError, InfeasibleError, Problem
+from gearcam.base.facts import Fact, Tree, extent
+from gearcam.base.findings import run_checks
+from gearcam.kinds.mechanism.asked import DEG
+from gearcam.kinds.mechanism.force_checks import CHECKS, JointedMachine
+from gearcam.kinds.mechanism.keys import center_of, way_of
+from gearcam.kinds.mechanism.loaded import work_of
+from gearcam.linkages.bonds import Bond, Hinge, ShaftDrive, SlidingJoint
+from gearcam.linkages.friction import GuideFriction
+from gearcam.linkages.reactions import Reactions, Structure, UnheldError, reactions
+from gearcam.numeric import narrowing
+from gearcam.numeric.piecewise import with_both_sides
+from gearcam.pictures.charts import Chart, Line
+from gearcam.results.study import StudyResult
+
+if TYPE_CHECKING:
+    from gearcam.kinds.mechanism.result import MechanismResult
+    from gearcam.linkages.friction import Friction
+    from gearcam.numeric.arrays import Array, Ints, Mask
+    from gearcam.results.study import Progress
+
+_NM: Final = 1e-3
+"""N m of a N mm."""
+
+_NARROW: Final = 1e-7
+"""Width, over the range, to which an extreme or the end of a locked range is narrowed."""
+
+_HALVINGS: Final = 20
+"""Halvings of the share of friction up to which nothing is locked."""
+
+_NOISE: Final = 1e-9
+"""Share of the largest value that is 0."""
+
+
+class JointForces:
+    """The forces in the joints of a mechanism.
+
+    Parameters
+    ----------
+    result : MechanismResult
+        The mechanism.
+
+    Raises
+    ------
+    DesignError
+        If a bearing is none.
+    InfeasibleError
+        If a load does not suit the motion.
+    """
+
+    def __init__(self, result: MechanismResult) -> None:
+        self.result = result
+        self.work = work_of(result.design, result.linkage, result.drives)
+        self.structure = Structure.of(self.work.linkage)
+
+    @cached_property
+    def labels(self) -> dict[Bond, str]:
+        """Names of joints, guides and drives: with the member where a name has several."""
+        names = {one: _label(one) for one in self.structure.bonds}
+        kept = [*names.values()]
+        return {
+            one: name if kept.count(name) == 1 else f"{name}_{one.on}"
+            for one, name in names.items()
+        }
+
+    @cached_property
+    def friction(self) -> dict[str, Friction[Any]]:
+        """Friction of joints and guides, by the names of bonds."""
+        design, found = self.result.design, dict[str, Any]()
+        every = (one for one in self.structure.bonds if isinstance(one, Hinge | SlidingJoint))
+        joints = {_named(one): one for one in every}
+        for bond in joints.values():
+            own = design.friction.of(bond)
+            if own is not None:
+                found[bond.name] = own
+        for number, spec in enumerate(design.bearing):
+            bond = joints.get(spec.on)
+            own = None if bond is None else spec.of(bond)
+            if bond is None or own is None:
+                what, near = f"{spec.on}: no members meet there", ", ".join(joints)
+                if bond is not None:
+                    what = f"{spec.on} is a {'hinge' if isinstance(bond, Hinge) else 'guide'}"
+                    near = "radius_mm for a hinge, length_mm for a guide"
+                key = f"bearing[{number}]"
+                raise DesignError([Problem(what, file=design.source, key=key, allowed=near)])
+            found[bond.name] = own
+        return found
+
+    def at(self, q: Array, share: float = 1.0) -> Reactions:
+        """Return the forces at the master's angles, with a share of all coefficients of friction.
+
+        Parameters
+        ----------
+        q : (n,) array, rad
+            The angles.
+        share : float
+            Of the coefficients of the design.
+
+        Raises
+        ------
+        InfeasibleError
+            If a force acts on what no member carries, or is not finite.
+        """
+        friction = {name: one.times(share) for name, one in self.friction.items()}
+        try:
+            return reactions(
+                self.work.linkage, self.work.efforts, q, speed=self.work.speed, friction=friction
+            )
+        except UnheldError as error:
+            what = f"the forces on {error.name} are not known: it is on no member"
+            raise InfeasibleError(what, where="load") from error
+
+    def sizes(self, found: Reactions) -> dict[str, Array]:
+        """Return the sizes of the forces of joints and guides, (n,), N."""
+        return {
+            name: np.abs(found.force(bond))
+            for bond, name in self.labels.items()
+            if isinstance(bond, Hinge | SlidingJoint)
+        }
+
+    def word(self, q: float) -> str:
+        """Return a place of the master in words."""
+        return f"{self.result.driver[0]} = {self.result.degrees(q)} deg"
+
+    def ranges(self, q: Array, mask: Mask) -> str:
+        """Return in words where a mask holds, of rising angles."""
+        rows = np.flatnonzero(mask)
+        groups = np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
+        ends = [[self.result.degrees(float(q[k])) for k in (one[0], one[-1])] for one in groups]
+        words = [low if low == high else f"{low} to {high}" for low, high in ends[:3]]
+        more = f" and {len(ends) - 3} more" if len(ends) > 3 else ""
+        return f"{self.result.driver[0]} = {', '.join(words)} deg{more}"
+
+
+def _named(bond: Bond) -> str:
+    """Return the name of a bond in the design: of a shaft's bearing that of the shaft."""
+    return bond.name.removesuffix(center_of("")).removesuffix(way_of(""))
+
+
+def _label(bond: Bond) -> str:
+    """Return the name of a bond in tables."""
+    return _named(bond) if isinstance(bond, Hinge | SlidingJoint) else f"{bond.name}_drive"
+
+
+def study_forces(result: MechanismResult, progress: Progress) -> StudyResult:
+    """Return the study of the forces in joints (see `gearcam.linkages.reactions`).
+
+    Parameters
+    ----------
+    result : MechanismResult
+        The mechanism.
+    progress : callable
+        Called with what is computed, the number done and their total.
+
+    Returns
+    -------
+    StudyResult
+        Its rows are those of ``forces.csv``.
+
+    Raises
+    ------
+    DesignError
+        If nothing acts on it, or a bearing is none.
+    InfeasibleError
+        If the mechanism does not close, or a load is not finite.
+    """
+    progress("forces", 0, 1)
+    with result.stage("forces"):
+        joints = JointForces(result)
+        q = _places(joints)
+        found = joints.at(q)
+        _demand_finite(joints, q, found)
+        machine = _machine(joints, q, found)
+        findings = run_checks(CHECKS, machine, result.design.limits)
+    return StudyResult(
+        result=result,
+        study=result.kind.studies["forces"],
+        file="forces.csv",
+        table=_columns(joints, q, found),
+        group=_facts(joints, q, found, machine),
+        study_findings=findings,
+        drawn=partial(_charts, joints, q, found),
+    )
+
+
+def _demand_finite(joints: JointForces, q: Array, found: Reactions) -> None:
+    """Refuse forces that are not finite where nothing is locked."""
+    wrong = ~np.isfinite(found.values).all(axis=1) & ~found.locked
+    if wrong.any():
+        where = joints.word(float(q[wrong][0]))
+        raise InfeasibleError(f"the forces are not finite at {where}", where="load")
+
+
+def _places(joints: JointForces) -> Array:
+    """Return the master's angles of the table: even ones, both sides of knots, and extremes."""
+    work = joints.work
+    low, high = work.linkage.span
+    even = np.linspace(low, high, joints.result.design.forces.steps + 1)
+    even[-1] = np.nextafter(high, low)
+    x = with_both_sides(even, work.knots)
+
+    def sought(q: Array) -> Array:
+        found = joints.at(q)
+        rows = np.stack([*joints.sizes(found).values(), found.moment, -found.moment])
+        return np.where(np.isfinite(rows), rows, -np.inf)
+
+    ends = np.append(x[:1], x[:-1]), np.append(x[1:], x[-1:])
+    samples = sought(x)
+    which, places, values = narrowing.summits(sought, samples, *ends, _NARROW * (high - low))
+    best = [np.flatnonzero(which == number) for number in np.unique(which)]
+    tops = places[[rows[np.argmax(values[rows])] for rows in best]]
+    return np.union1d(np.union1d(x, tops), _switches(joints, x))
+
+
+def _switches(joints: JointForces, x: Array) -> Array:
+    """Return both sides of where friction begins and ends to lock, near angles `x`."""
+    locked = joints.at(x).locked
+    at = np.flatnonzero(locked[1:] != locked[:-1])
+    if not at.size:
+        return x[:0]
+
+    def function(places: Array, rows: Ints) -> Array:
+        del rows
+        return joints.at(places.ravel()).locked.reshape(places.shape).astype(float)
+
+    width = _NARROW * (x[-1] - x[0])
+    return np.concatenate(narrowing.changes(function, x[at], x[at + 1], width))
+
+
+def _machine(joints: JointForces, q: Array, found: Reactions) -> JointedMachine:
+    """Return the input of the checks."""
+    largest, tipping = {}, {}
+    for name, sizes in joints.sizes(found).items():
+        top = int(np.nanargmax(sizes)) if np.isfinite(sizes).any() else 0
+        largest[name] = (float(np.nan_to_num(sizes[top])), joints.word(float(q[top])))
+    for bond, name in joints.labels.items():
+        one = joints.friction.get(bond.name)
+        if isinstance(one, GuideFriction):
+            tips = one.tips(found.of(bond))
+            if tips.any():
+                tipping[name] = joints.ranges(q, tips)
+    locked = found.locked
+    return JointedMachine(
+        locked=joints.ranges(q, locked) if locked.any() else "",
+        room=float(found.room.min()),
+        free=_free_share(joints, q) if locked.any() else 1.0,
+        tipping=tipping,
+        largest=largest,
+    )
+
+
+def _free_share(joints: JointForces, q: Array) -> float:
+    """Return up to which share of all coefficients of friction nothing is locked, rounded down."""
+    low, high = 0.0, 1.0
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if joints.at(q, middle).locked.any() else (middle, high)
+    scale = 10.0 ** (2 - math.floor(math.log10(low))) if low else 1.0
+    return math.floor(low * scale) / scale
+
+
+def _columns(joints: JointForces, q: Array, found: Reactions) -> dict[str, Any]:
+    """Return the columns of ``forces.csv``."""
+    columns: dict[str, Any] = {
+        f"{joints.result.driver[0]}_deg": DEG * q,
+        "torque_nm": np.ma.masked_invalid(_NM * found.moment),
+    }
+    if joints.friction:
+        columns["torque_without_friction_nm"] = _NM * found.work
+        columns["lost_nm"] = np.ma.masked_invalid(_NM * (found.moment - found.work))
+        columns["efficiency"] = np.ma.masked_invalid(_efficiency(found))
+    if joints.result.speed is not None:
+        columns["power_w"] = columns["torque_nm"] * joints.result.speed
+    for bond, name in joints.labels.items():
+        own = found.of(bond).T
+        if isinstance(bond, Hinge | SlidingJoint):
+            force = found.force(bond)
+            columns[f"{name}_x_n"], columns[f"{name}_y_n"] = force.real, force.imag
+            columns[f"{name}_n"] = np.abs(force)
+        if isinstance(bond, SlidingJoint):
+            columns[f"{name}_couple_nm"] = _NM * own[1]
+        elif not isinstance(bond, Hinge):
+            turns = bond.unknowns == ShaftDrive.unknowns
+            columns[f"{name}_{'nm' if turns else 'n'}"] = (_NM if turns else 1.0) * own[0]
+    return {name: np.ma.masked_invalid(values) for name, values in columns.items()}
+
+
+def _efficiency(found: Reactions) -> Array:
+    """Return the efficiency at each place: nan where the moment changes its sense, or is locked."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = found.work / found.moment
+        ratio = np.where(found.moment < 0.0, 1.0 / ratio, ratio)
+    return np.where(ratio > 0.0, ratio, np.nan)
+
+
+def _facts(joints: JointForces, q: Array, found: Reactions, machine: JointedMachine) -> Tree:
+    """Return the facts of the study."""
+    tree: Tree = {"torque_nm": _moment(joints, q, found)}
+    if joints.friction and not found.locked.any():
+        work = [float(np.trapezoid(one, q)) for one in (found.work, found.moment)]
+        if work[0] > 0.0:
+            value = work[0] / work[1]
+            tree["efficiency"] = Fact(value, "efficiency over the range", unit="", shown=True)
+    tree["joints"] = {
+        name: {
+            "largest_n": Fact(
+                force, f"largest force {_on(joints, name)}", place=f"at {where}", shown=True
+            )
+        }
+        for name, (force, where) in machine.largest.items()
+    }
+    tree["locked"] = bool(found.locked.any())
+    tree["error"] = Fact(found.apart, "moment by reactions less that by virtual work", unit="")
+    return tree | {"assumptions": Fact(_assumed(joints), "assumed", shown=True)}
+
+
+def _on(joints: JointForces, name: str) -> str:
+    bond = next(one for one, label in joints.labels.items() if label == name)
+    return f"at {name}, of {bond.by} on {bond.on}"
+
+
+def _moment(joints: JointForces, q: Array, found: Reactions) -> Fact:
+    values = _NM * found.moment
+    least, largest = int(np.nanargmin(values)), int(np.nanargmax(values))
+    low, high = float(values[least]), float(values[largest])
+    noise = _NOISE * max(abs(low), abs(high))
+    place = f"least at {joints.word(float(q[least]))}, largest at {joints.word(float(q[largest]))}"
+    return Fact(extent(low, high), "moment of the driver", place=place, shown=True, noise=noise)
+
+
+def _assumed(joints: JointForces) -> str:
+    """Return what is left out, in words."""
+    words = [] if joints.friction else ["no friction"]
+    if joints.result.speed is None:
+        words.append("at rest, without inertia")
+    if any(drive.spec.pair is not None for drive in joints.result.drives):
+        words.append("bearings of wheels without the force of their teeth")
+    return ", ".join(words) or "the driver turns evenly"
+
+
+def _charts(joints: JointForces, q: Array, found: Reactions) -> dict[str, Chart]:
+    """Return charts of the forces over the range, and hodographs."""
+    x, axis = DEG * q, joints.result.axis
+    lines = tuple(Line(label=name, x=x, y=values) for name, values in joints.sizes(found).items())
+    charts = {
+        "joints": Chart(title="Forces in joints and guides", x=axis, y="force, N", lines=lines)
+    }
+    if joints.friction:
+        both = (
+            Line(label="with friction", x=x, y=_NM * found.moment),
+            Line(label="without", x=x, y=_NM * found.work),
+        )
+        title = "Moment of the driver"
+        charts["torque_friction"] = Chart(title=title, x=axis, y="moment, N m", lines=both)
+    for bond, name in joints.labels.items():
+        if isinstance(bond, Hinge):
+            force = found.force(bond)
+            frames = {"in the machine": 1.0 + 0j} | {
+                f"on {one}": found.known.direction(one) for one in (bond.on, bond.by)
+            }
+            turned = {label: force * np.conj(way) for label, way in frames.items()}
+            charts[f"hodograph_{name}"] = Chart(
+                title=f"Force at {name}, of {bond.by} on {bond.on}, over its direction",
+                x="along x, N",
+                y="along y, N",
+                lines=tuple(
+                    Line(label=label, x=one.real, y=one.imag) for label, one in turned.items()
+                ),
+            )
+    return charts

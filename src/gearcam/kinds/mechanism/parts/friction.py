@@ -1,0 +1,98 @@
+"""Friction: the table ``[friction]``, and ``[[bearing]]`` of single joints."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from gearcam.base.display import ShortRepr
+from gearcam.base.quantities import LENGTH, LONGEST, param, positive_length
+from gearcam.base.rules import Breach, needs
+from gearcam.kinds.mechanism.keys import Sort, WithNames, named
+from gearcam.linkages.bonds import Bond, Hinge
+from gearcam.linkages.friction import Friction, GuideFriction, JournalFriction
+
+
+@dataclass(frozen=True, kw_only=True)
+class MachineFrictionSpec(ShortRepr):
+    """Coefficients of friction of a mechanism, 0 where left out, and sizes of its bearings.
+
+    Of single ones ``[[bearing]]`` gives others.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.MachineFrictionSpec(joint=0.1, journal_radius=8.0)
+    MachineFrictionSpec(joint=0.1, journal_radius=8)
+    """
+
+    joint: float = param(
+        default=0.0, ge=0, le=2, zero_is_none=True, doc="of the journals of all hinges and shafts"
+    )
+    guide: float = param(default=0.0, ge=0, le=2, zero_is_none=True, doc="of all straight guides")
+    journal_radius: float | None = positive_length(example=8, doc="radius of the journals")
+    guide_length: float | None = positive_length(
+        example=80, doc="length of what slides in the guides; long if left out"
+    )
+
+    rules = (
+        needs("joint", "journal_radius"),
+        needs("journal_radius", "joint"),
+        needs("guide_length", "guide"),
+    )
+
+    def of(self, bond: Bond) -> Friction[Any] | None:
+        """Return the friction of a hinge or guide; None without."""
+        if isinstance(bond, Hinge):
+            if not self.joint or self.journal_radius is None:
+                return None
+            return JournalFriction(coefficient=self.joint, radius=self.journal_radius)
+        length = math.inf if self.guide_length is None else self.guide_length
+        return GuideFriction(coefficient=self.guide, length=length) if self.guide else None
+
+
+@dataclass(frozen=True, kw_only=True)
+class BearingSpec(WithNames):
+    """Friction of one hinge or guide, instead of that in ``[friction]``.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.BearingSpec(on="B", coefficient=0.1, radius=8.0)
+    BearingSpec(on='B', coefficient=0.1, radius=8)
+    """
+
+    on: str = named(
+        needs=f"{Sort.JOINT} or {Sort.GUIDE} or {Sort.SHAFT} or {Sort.WAY}",
+        example="B",
+        doc="a joint, a guide, or the shaft or slide of a drive",
+    )
+    coefficient: float = param(ge=0, le=2, example=0.1, doc="of friction")
+    radius: float | None = param(
+        LENGTH, default=None, gt=0, le=LONGEST, example=8, doc="radius of the journal of a hinge"
+    )
+    length: float | None = param(
+        LENGTH,
+        default=None,
+        gt=0,
+        le=LONGEST,
+        example=80,
+        doc="length of what slides in a guide; long if left out",
+    )
+
+    def problems(self) -> Iterator[Breach]:
+        """Yield contradictions: field, index, message, what is allowed."""
+        if self.radius is not None and self.length is not None:
+            yield "length", None, "is given beside radius_mm", "radius_mm of a hinge, or length_mm"
+
+    def of(self, bond: Bond) -> Friction[Any] | None:
+        """Return the friction of a hinge or guide; None if it has the sizes of the other."""
+        if isinstance(bond, Hinge):
+            if self.radius is None:
+                return None
+            return JournalFriction(coefficient=self.coefficient, radius=self.radius)
+        length = math.inf if self.length is None else self.length
+        own = GuideFriction(coefficient=self.coefficient, length=length)
+        return None if self.radius else own
