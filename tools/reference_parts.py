@@ -36,6 +36,7 @@ GROUPS: Final = {
     "mechanisms": "Motion",
     "tables of mechanisms": "What is asked for, loads, and chains",
     "torque of a mechanism": "Torque (`gearcam torque`)",
+    "forces of a mechanism": "Forces in joints (`gearcam forces`)",
     "globoidal cams": "Walls and hold",
     "rows of tables": "Tables of laws and motions",
     "solids of globoidal cams": "Solids",

@@ -105,9 +105,9 @@ class HeldMembers:
     ) -> None:
         self.known, self.carriers, self.slides = known, carriers, slides
 
-    def force(self, joint: str, force: Plane) -> Iterator[tuple[str, Wrench]]:
-        """Yield a `force` at a `joint`, (n,), N, in the machine's frame."""
-        yield self.carriers[joint], Wrench.at(self.known.place(joint), force)
+    def force(self, joint: str, force: Plane, member: str = "") -> Iterator[tuple[str, Wrench]]:
+        """Yield a `force` at a `joint`, (n,), N, on a `member`, or on that which carries it."""
+        yield member or self.carriers[joint], Wrench.at(self.known.place(joint), force)
 
 
 @dataclass(frozen=True)
@@ -118,9 +118,12 @@ class NamedCoordinate(ShortRepr, WorkCoordinate):
     ----------
     name : str
         A joint, a shaft, or the way of a slide.
+    member : str
+        Of several in a joint that on which forces act; that which carries the joint if empty.
     """
 
     name: str
+    member: str = ""
 
     def place(self, state: WorkState) -> Jet:
         """Return the place, complex, mm, the turn, rad, or the way, mm."""
@@ -133,7 +136,7 @@ class NamedCoordinate(ShortRepr, WorkCoordinate):
     def wrenches(self, held: HeldMembers, force: Plane) -> Iterator[tuple[str, Wrench]]:
         """Yield a `force` at a joint `held`, or along a guide; a drive's own part is no member."""
         if self.name in held.carriers:
-            yield from held.force(self.name, force)
+            yield from held.force(self.name, force, self.member)
         elif self.name in held.slides:
             guide = held.slides[self.name]
             unit = guide.along(held.known)

@@ -139,7 +139,11 @@ class AppliedForce(ShortRepr, Effort):
 
 
 def force_on(
-    point: str, force: complex, part: str = LOADS, active: ActiveRanges | None = None
+    point: str,
+    force: complex,
+    part: str = LOADS,
+    active: ActiveRanges | None = None,
+    member: str = "",
 ) -> AppliedForce:
     """Return a force of constant size and direction at a point.
 
@@ -153,8 +157,10 @@ def force_on(
         Of `PARTS`.
     active : ActiveRanges, optional
         Where it acts.
+    member : str
+        See `NamedCoordinate`.
     """
-    return AppliedForce(NamedCoordinate(point), lambda _: force, part, active)
+    return AppliedForce(NamedCoordinate(point, member), lambda _: force, part, active)
 
 
 @dataclass(frozen=True)
@@ -180,7 +186,7 @@ class InertiaForce(ShortRepr, Effort):
     @classmethod
     def of_mass(cls, center: str, mass: float, member: str) -> InertiaForce:
         """Return that of a `mass`, kg, of a `member`, by the joint in its `center` of mass."""
-        return cls(NamedCoordinate(center), _MILLI * mass, member)
+        return cls(NamedCoordinate(center, member), _MILLI * mass, member)
 
     @classmethod
     def of_turn(cls, turn: WorkCoordinate, inertia: float, member: str) -> InertiaForce:

@@ -432,9 +432,13 @@ class Dyad(ShortRepr, Element):
         return next((k for k in (0, 1) if f"member{k + 1}" in self.kind.slides), None)
 
     def carried(self, carriers: Carriers) -> Carriers:
-        """Return its members; the joint between is on the first one, or on what slides."""
+        """Return its members; the joint between is on the first one, or on what slides.
+
+        It is on the second one, too, if a cylinder is the first: it is not fixed to that.
+        """
         del carriers
-        last = self._guiding == 0 or (self._guiding is None and self.kind.guides == (False, True))
+        slides = self.kind.guides == (False, True) and self._guiding is None
+        last = self._guiding == 0 or slides or self.driven is not None
         own = self.members[1 if last else 0]
         return {self.joint: own, **{one: one for one in self.members}}
 

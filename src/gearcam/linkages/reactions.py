@@ -35,11 +35,19 @@ from gearcam.linkages.known import GROUND, Known
 from gearcam.linkages.linkage import Linkage
 from gearcam.numeric.arrays import Array, Mask, Plane
 
-_STEPS: Final = 50
+_STEPS: Final = 30
 """Largest number of Newton steps with friction: five are usual."""
 
-_SETTLED: Final = 1e-12
-"""Change of the reactions, over the largest, at which they are known."""
+_SETTLED: Final = 1e-8
+"""Change of the reactions in a step, over the largest, at which they are known: the error falls
+with its square."""
+
+_SINGULAR: Final = 1e-6
+"""Determinant, over that without friction, that is none: the forces would be a million times as
+large, and lose as many digits."""
+
+_SHARES: Final = (0.25, 0.5, 0.75, 1.0)
+"""Shares of the friction on the way to all of it."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -103,8 +111,8 @@ class Reactions(ShortRepr):
     lost : (n,) array, N mm
         Work lost to friction per rad of the driver.
     room : (n,) array
-        Determinant of the equilibrium with friction over that without: 1 without friction, 0 and
-        less where the machine is locked.
+        Determinant of the equilibrium with friction over that without: 1 without friction, 0 where
+        the machine is locked.
     """
 
     structure: Structure
@@ -128,7 +136,7 @@ class Reactions(ShortRepr):
     @property
     def locked(self) -> Mask:
         """Where friction locks the machine, (n,)."""
-        return ~(self.room > 0.0)
+        return self.room == 0.0
 
     @property
     def apart(self) -> float:
@@ -265,10 +273,26 @@ class _Equilibrium:
     def rubbing(
         self, free: Array, loads: Array, pairs: Sequence[tuple[Bond, Friction[Any]]]
     ) -> tuple[Array, Array, Array]:
-        """Return the unknowns with friction, what is left of the determinant, and the work lost."""
-        values, lost, tangent = free, np.zeros(len(free)), self.matrix
-        for _ in range(_STEPS if pairs else 0):
-            tangent, rest, lost = self.matrix.copy(), loads.copy(), np.zeros(len(free))
+        """Return the unknowns with friction, what is left of the determinant, and the work lost.
+
+        From none to all of the friction: where the determinant comes to 0 on the way, or no forces
+        are found, it locks.
+        """
+        values, room, lost = free, np.ones(len(free)), np.zeros(len(free))
+        for share in _SHARES if pairs else ():
+            some = [(bond, one.times(share)) for bond, one in pairs]
+            values, left, lost = self._settled(values, loads, some)
+            room = np.where(room > 0.0, left, 0.0)
+        return np.where(room[:, None] > 0.0, values, np.nan), room, lost
+
+    def _settled(
+        self, values: Array, loads: Array, pairs: Sequence[tuple[Bond, Friction[Any]]]
+    ) -> tuple[Array, Array, Array]:
+        """Return unknowns, determinant (0 where they are not found) and work by Newton's method."""
+        plain, whole = np.linalg.slogdet(self.matrix)
+        settled = np.zeros(len(loads), dtype=bool)
+        for _ in range(_STEPS):
+            tangent, rest, lost = self.matrix.copy(), loads.copy(), np.zeros(len(loads))
             for bond, one in pairs:
                 own = self.structure.columns[bond]
                 found = one.of(bond, self.known, values[:, own])
@@ -277,11 +301,16 @@ class _Equilibrium:
                 rest += column * found.size[:, None]
                 tangent[:, :, own] += column[:, :, None] * found.slopes[:, None, :]
                 lost += found.lost
+            sign, size = np.linalg.slogdet(tangent)
+            room = sign * plain * np.exp(size - whole)
+            singular = np.abs(room) < _SINGULAR
+            tangent[singular] = self.matrix[singular]
             residual = (self.matrix @ values[..., None])[..., 0] + rest
             step = np.linalg.solve(tangent, -residual[..., None])[..., 0]
+            step[settled | singular] = 0.0
             values = values + step
-            if (np.abs(step).max(axis=1) <= _SETTLED * np.abs(values).max(axis=1)).all():
+            near = np.abs(step).max(axis=1) <= _SETTLED * np.abs(values).max(axis=1)
+            settled |= near & ~singular
+            if settled.all():
                 break
-        (sign, size), (plain, whole) = map(np.linalg.slogdet, (tangent, self.matrix))
-        room = sign * plain * np.exp(size - whole)
-        return np.where(room[:, None] > 0.0, values, np.nan), room, lost
+        return values, np.where(settled & (room > _SINGULAR), room, 0.0), lost

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 from gearcam.kinds.mechanism.keys import center_of, way_of
 from gearcam.kinds.mechanism.names import acted_on, acting, tables_of
 from gearcam.kinds.mechanism.parts.action import LoadedLinkage
-from gearcam.linkages.coordinates import NamedCoordinate
+from gearcam.linkages.coordinates import MemberTurn
 from gearcam.linkages.efforts import GRAVITY, SPRINGS, InertiaForce, force_on
 from gearcam.linkages.elements import Crank, Element, PushedSlide
 from gearcam.linkages.work import VirtualWork
@@ -62,14 +62,16 @@ def work_of(
     on = LoadedLinkage(whole, acted, design.drive[0].speed, design.gravity.pull)
     efforts = [effort for (_, k), one in acting(tables) for effort in one.efforts(on, k)]
     for _, center, mass, inertia in wheels:
-        efforts.append(inertia)
+        efforts += inertia
         if on.pull:
             efforts.append(force_on(center, mass * on.pull, GRAVITY))
     efforts.sort(key=lambda one: one.part == SPRINGS)  # last, behind all that has a mass
     return VirtualWork(whole, efforts, on.speed, tuple(on.knots))
 
 
-def _wheels(drives: Sequence[PlacedDrive]) -> Iterator[tuple[Element, str, float, InertiaForce]]:
+def _wheels(
+    drives: Sequence[PlacedDrive],
+) -> Iterator[tuple[Element, str, float, list[InertiaForce]]]:
     """Yield wheels and racks with a density: an element, their centre of mass, mass and inertia."""
     from gearcam.parts.mass import mass_properties
 
@@ -83,13 +85,13 @@ def _wheels(drives: Sequence[PlacedDrive]) -> Iterator[tuple[Element, str, float
             mass = mass_properties(drive.result.parts[number], density)
             name = f"{drive.spec.name}.{word}"
             member, center = name + BODY, f"{name}.center of mass"
+            inertia = [InertiaForce.of_mass(center, mass.mass, member)]
             if moved.along:  # any point of it has its way
                 element = PushedSlide(member, name, way_of(name), center)
-                inertia = InertiaForce.of_mass(center, mass.mass, member)
             else:
                 off = drive.vector(complex(*mass.centroid[:2]))
                 start = cmath.phase(off)
                 element = Crank(member, name, center_of(name), center, abs(off), start)
-                # about its shaft, which stands still
-                inertia = InertiaForce.of_turn(NamedCoordinate(name), _M2 * mass.inertia, name)
+                own = mass.inertia - mass.mass * abs(off) ** 2  # about its centre of mass
+                inertia.append(InertiaForce.of_turn(MemberTurn(member), _M2 * own, member))
             yield element, center, mass.mass, inertia

@@ -92,4 +92,4 @@ class MemberMass(MachineAction):
             center = self._center(on.acted, number)
             yield InertiaForce.of_mass(center, self.mass, self.of)
             if on.pull:
-                yield force_on(center, self.mass * on.pull, GRAVITY)
+                yield force_on(center, self.mass * on.pull, GRAVITY, member=self.of)
