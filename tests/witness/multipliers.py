@@ -15,9 +15,6 @@ from typing import Any
 
 import numpy as np
 
-from gearcam.linkages.elements import Crank, Dyad, GuideLine, MemberPoint
-from gearcam.linkages.linkage import Linkage
-
 _APART = np.array([-2, -1, 0, 1, 2])
 _SECOND = np.array([-1.0, 16.0, -30.0, 16.0, -1.0]) / 12.0
 """The second derivative from five values, with an error of fourth order."""
@@ -52,17 +49,17 @@ _BLOCK = {"RTR1": 1, "RTR2": 0, "RTT": 0, "TTR": 1, "RRT": 1}
 """Which member has the middle joint, where it is not the first one."""
 
 
-def _joined(linkage: Linkage) -> list[Joined]:
+def _joined(linkage: Any) -> list[Joined]:
     """What joins the members."""
     own, found = {"ground": "ground"}, list[Joined]()
     for one in linkage.elements:
-        if isinstance(one, MemberPoint | GuideLine):
+        if type(one).__name__ in ("MemberPoint", "GuideLine"):
             own[one.name] = own[one.on]
-        elif isinstance(one, Crank):
+        elif type(one).__name__ == "Crank":
             own |= {one.name: one.name, one.joint: one.name}
             found.append(Joined("hinge", one.center, one.name, own[one.center], one.center))
             found.append(Joined("turn", one.shaft, one.name, own[one.center]))
-        elif isinstance(one, Dyad):
+        elif type(one).__name__ == "Dyad":
             members, block = one.members, 1 if one.driven else _BLOCK.get(one.type, 0)
             own |= {name: name for name in members} | {one.joint: members[block]}
             for member, end, letter in zip(
@@ -86,7 +83,7 @@ Places = dict[str, Any]
 class _Positions:
     """Where the members are at an angle of the driver, and beside it."""
 
-    def __init__(self, linkage: Linkage, q: float, members: list[str]) -> None:
+    def __init__(self, linkage: Any, q: float, members: list[str]) -> None:
         self.known = linkage.at(q + _STEP * _APART, 0)
         self.frames: Places = {"ground": np.zeros(3)}
         for name in members:
@@ -139,7 +136,7 @@ class _Positions:
 
 
 def multipliers(
-    linkage: Linkage, lumped: list[Lumped], q: float, speed: float
+    linkage: Any, lumped: list[Lumped], q: float, speed: float
 ) -> dict[tuple[str, str], Any]:
     """Multipliers of each joint by its name and member: force x and y, or across and couple."""
     joints = _joined(linkage)

@@ -130,4 +130,4 @@ class GuideFriction(Friction[SlidingJoint]):
 
     def tips(self, own: Array) -> Mask:
         """Return where the slide tips, (n,), with normal force and couple `own`, (n, 2)."""
-        return 2.0 * np.abs(own[:, 1]) > self.length * np.abs(own[:, 0])
+        return np.abs(own[:, 1]) * (2.0 / self.length) > np.abs(own[:, 0])

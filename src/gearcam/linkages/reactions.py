@@ -267,8 +267,7 @@ class _Equilibrium:
 
     def solved(self, loads: Array) -> Array:
         """Return the unknowns without friction, (n, u)."""
-        made: Array = np.linalg.solve(self.matrix, -loads[..., None])[..., 0]
-        return made
+        return np.asarray(np.linalg.solve(self.matrix, -loads[..., None])[..., 0], dtype=float)
 
     def rubbing(
         self, free: Array, loads: Array, pairs: Sequence[tuple[Bond, Friction[Any]]]
@@ -290,7 +289,7 @@ class _Equilibrium:
     ) -> tuple[Array, Array, Array]:
         """Return unknowns, determinant (0 where they are not found) and work by Newton's method."""
         plain, whole = np.linalg.slogdet(self.matrix)
-        settled = np.zeros(len(loads), dtype=bool)
+        settled, room, lost = np.zeros(len(loads), dtype=bool), np.ones(len(loads)), loads[:, 0]
         for _ in range(_STEPS):
             tangent, rest, lost = self.matrix.copy(), loads.copy(), np.zeros(len(loads))
             for bond, one in pairs:

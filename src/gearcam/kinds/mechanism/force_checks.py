@@ -23,8 +23,6 @@ class JointedMachine(ShortRepr):
     ----------
     locked : str
         Where friction locks it, in words; empty if nowhere.
-    room : float
-        Least share of the determinant that friction leaves.
     free : float
         Share of all coefficients of friction up to which it is locked nowhere.
     tipping : mapping of str to str
@@ -34,13 +32,12 @@ class JointedMachine(ShortRepr):
     """
 
     locked: str
-    room: float
     free: float
     tipping: dict[str, str]
     largest: dict[str, tuple[float, str]]
 
 
-@check("self-locking", kind=CHECKS, relation="at least", severity="error")
+@check("self-locking", kind=CHECKS, severity="error")
 def self_locking(machine: JointedMachine, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Report where friction locks the machine: no torque of the driver moves it.
 
@@ -52,8 +49,6 @@ def self_locking(machine: JointedMachine, limit: float) -> Iterator[Remark]:  # 
             f"Friction locks the machine. With up to {formatted(machine.free, 3)} times the "
             "coefficients of friction it moves everywhere.",
             machine.locked,
-            machine.room,
-            limit=0.0,
         )
 
 

@@ -19,6 +19,7 @@ from gearcam.linkages.bonds import Bond, Hinge, ShaftDrive, SlidingJoint
 from gearcam.linkages.friction import GuideFriction
 from gearcam.linkages.reactions import Reactions, Structure, UnheldError, reactions
 from gearcam.numeric import narrowing
+from gearcam.numeric.gauss import gauss_cells
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Line
 from gearcam.results.study import StudyResult
@@ -133,7 +134,7 @@ class JointForces:
         return f"{self.result.driver[0]} = {self.result.degrees(q)} deg"
 
     def ranges(self, q: Array, mask: Mask) -> str:
-        """Return in words where a mask holds, of rising angles."""
+        """Return in words where a `mask` holds, (n,), of rising angles `q`, (n,), rad."""
         rows = np.flatnonzero(mask)
         groups = np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
         ends = [[self.result.degrees(float(q[k])) for k in (one[0], one[-1])] for one in groups]
@@ -252,7 +253,6 @@ def _machine(joints: JointForces, q: Array, found: Reactions) -> JointedMachine:
     locked = found.locked
     return JointedMachine(
         locked=joints.ranges(q, locked) if locked.any() else "",
-        room=float(found.room.min()),
         free=_free_share(joints, q) if locked.any() else 1.0,
         tipping=tipping,
         largest=largest,
@@ -307,9 +307,9 @@ def _facts(joints: JointForces, q: Array, found: Reactions, machine: JointedMach
     """Return the facts of the study."""
     tree: Tree = {"torque_nm": _moment(joints, q, found)}
     if joints.friction and not found.locked.any():
-        work = [float(np.trapezoid(one, q)) for one in (found.work, found.moment)]
-        if work[0] > 0.0:
-            value = work[0] / work[1]
+        useful, driven = _works(joints)
+        if useful > 0.0:
+            value = useful / driven
             tree["efficiency"] = Fact(value, "efficiency over the range", unit="", shown=True)
     tree["joints"] = {
         name: {
@@ -322,6 +322,14 @@ def _facts(joints: JointForces, q: Array, found: Reactions, machine: JointedMach
     tree["locked"] = bool(found.locked.any())
     tree["error"] = Fact(found.apart, "moment by reactions less that by virtual work", unit="")
     return tree | {"assumptions": Fact(_assumed(joints), "assumed", shown=True)}
+
+
+def _works(joints: JointForces) -> tuple[float, float]:
+    """Return the driver's work over the range without friction, and with it, N mm."""
+    cells = joints.work.cells
+    places, weights = (one.ravel() for one in gauss_cells(cells[:-1], cells[1:]))
+    found = joints.at(places)
+    return float(weights @ found.work), float(weights @ found.moment)
 
 
 def _on(joints: JointForces, name: str) -> str:

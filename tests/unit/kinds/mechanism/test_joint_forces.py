@@ -1,0 +1,167 @@
+"""The study of forces in joints: its table, facts, findings, charts, and what it refuses."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gearcam as gc
+from gearcam.base.errors import DesignError
+from gearcam.linkages.reactions import Structure
+from helpers_machines import MACHINES
+
+LOAD = [{"on": "C", "force_n": [40, -90]}]
+RUBBING = {"joint": 0.1, "journal_radius_mm": 6}
+
+
+def built(machine: str = "four-bar", **changes: Any) -> Any:
+    tables = {**MACHINES[machine], "load": LOAD, **changes}
+    return gc.build(gc.design({"kind": "mechanism", "name": "mine", **tables}))
+
+
+@cache
+def study() -> Any:
+    return built(friction=RUBBING).study("forces")
+
+
+def test_rows_have_forces_and_the_driver_with_and_without_friction() -> None:
+    table = study().columns
+    for name in (one.removesuffix("_x_n") for one in table if one.endswith("_x_n")):
+        size = np.hypot(table[f"{name}_x_n"], table[f"{name}_y_n"])
+        assert table[f"{name}_n"] == pytest.approx(size)
+    lost = table["torque_nm"] - table["torque_without_friction_nm"]
+    assert table["lost_nm"] == pytest.approx(lost, abs=1e-12)
+    assert (lost > 0.0).all()
+    driven = table["torque_without_friction_nm"] > 0.0
+    both = table["torque_without_friction_nm"] / table["torque_nm"]
+    assert table["efficiency"][driven] == pytest.approx(both[driven])
+
+
+def test_facts_are_the_extremes_of_all_angles() -> None:
+    facts, dense = study().facts, built(friction=RUBBING, forces={"steps": 5000}).study("forces")
+    for name in facts["forces.joints"]:
+        most = np.nanmax(dense.columns[f"{name}_n"])
+        assert facts[f"forces.joints.{name}.largest_n"] == pytest.approx(most, rel=1e-9)
+    assert facts["forces.torque_nm.max"] == pytest.approx(np.max(dense.columns["torque_nm"]))
+    assert facts["forces.error"] < 1e-10
+    assert not facts["forces.locked"]
+
+
+def test_the_work_without_friction_over_that_with_it_is_the_efficiency() -> None:
+    machine = gc.load("profiles/quick_return.toml").with_({
+        "load": [{"on": "ram", "force_n": 1500, "against": True}],
+        "friction": {"joint": 0.1, "journal_radius_mm": 10, "guide": 0.1},
+        "forces.steps": 4000,
+    })  # fmt: skip
+    made = gc.build(machine).study("forces")
+    q = np.radians(made.columns["theta_deg"])
+    works = [
+        np.trapezoid(made.columns[name], q) for name in ("torque_without_friction_nm", "torque_nm")
+    ]
+    assert made.facts["forces.efficiency"] == pytest.approx(works[0] / works[1], rel=1e-5)
+
+
+def test_without_friction_nothing_is_said_of_it() -> None:
+    made = built().study("forces")
+    assert "torque_without_friction_nm" not in made.columns
+    assert "forces.efficiency" not in made.facts
+    assert "no friction" in made.facts["forces.assumptions"]
+    torque = built().study("torque")
+    assert made.facts["forces.torque_nm.max"] == pytest.approx(torque.facts["torque.torque_nm.max"])
+
+
+def test_charts_have_every_joint_and_hodographs() -> None:
+    charts = study().charts
+    hinges = [name for name in charts if name.startswith("hodograph_")]
+    assert len(hinges) == 4
+    assert len(charts["joints"].lines) == 4
+    for name in hinges:  # of the same size in every frame
+        sizes = [np.hypot(line.x, line.y) for line in charts[name].lines]
+        assert sizes[1] == pytest.approx(sizes[0])
+        assert sizes[2] == pytest.approx(sizes[0])
+    assert {*charts} >= {"joints", "torque_friction"}
+
+
+def test_a_limit_of_forces_and_slides_that_tip_are_told() -> None:
+    machine = gc.load("profiles/quick_return.toml").with_({
+        "load": [{"on": "ram", "force_n": 1500, "against": True}],
+        "friction": {"guide": 0.1, "guide_length_mm": 5},
+        "mass": [{"of": "slider", "mass_kg": 20, "at_mm": [0, 60]}],
+        "limits.joint_force_n": 1000,
+    })  # fmt: skip
+    found = gc.build(machine).study("forces").study_findings
+    codes = [one.code for one in found]
+    assert "edge-contact" in codes
+    forces = [one for one in found if one.code == "joint-force"]
+    assert forces
+    assert all(one.value is not None and one.value > 1000.0 for one in forces)
+
+
+def steep(guide: float) -> Any:
+    """A slider-crank whose rod stands steep on the guide."""
+    return gc.build(gc.design({
+        "kind": "mechanism", "name": "steep",
+        "drive": [{"name": "motor", "even": True}],
+        "guide": [{"name": "bed", "at_mm": [0, 20]}],
+        "crank": [{"name": "crank", "on": "motor", "joint": "B", "length_mm": 100}],
+        "dyad": [{"type": "RRT", "from": "B", "to": "bed", "joint": "C",
+                  "members": ["rod", "slide"], "lengths_mm": [125, 0]}],
+        "load": [{"on": "C", "force_n": 1000, "against": True}],
+        "friction": {"guide": guide},
+    })).study("forces")  # fmt: skip
+
+
+def test_where_it_is_locked_there_are_no_forces() -> None:
+    made = steep(0.4)
+    (one,) = (one for one in made.study_findings if one.code == "self-locking")
+    assert one.severity == "error"
+    assert made.facts["forces.locked"]
+    assert np.isnan(made.columns["torque_nm"]).any()
+    assert "forces.efficiency" not in made.facts
+    share = float(one.message.split(" times")[0].split()[-1])
+    assert not steep(0.4 * share).facts["forces.locked"]
+    assert steep(0.4 * 1.01 * share).facts["forces.locked"]
+
+
+REFUSED: dict[str, tuple[dict[str, Any], str]] = {
+    "nothing acts": ({"load": []}, "nothing acts on the mechanism"),
+    "a bearing at a point": (
+        {"bearing": [{"on": "P", "coefficient": 0.1, "radius_mm": 5}]}, "no members meet there",
+    ),
+    "a length of a hinge": (
+        {"bearing": [{"on": "C", "coefficient": 0.1, "length_mm": 5}]}, "C is a hinge",
+    ),
+    "both": (
+        {"bearing": [{"on": "C", "coefficient": 0.1, "length_mm": 5, "radius_mm": 5}]},
+        "is given beside radius_mm",
+    ),
+    "no such name": ({"bearing": [{"on": "X", "coefficient": 0.1}]}, "nothing has this name"),
+    "no radius": ({"friction": {"joint": 0.1}}, "journal_radius_mm"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_is_refused(name: str) -> None:
+    changes, words = REFUSED[name]
+    with pytest.raises(DesignError, match=words):
+        built(**changes).study("forces")
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+def test_every_machine_has_forces(machine: str) -> None:
+    """Weights of all members, at an even speed or at rest: virtual work finds the same moment."""
+    tables = MACHINES[machine]
+    drives = [{**one} for one in tables["drive"]]
+    drives[0]["speed_rpm"] = 60
+    result = gc.build(gc.design({"kind": "mechanism", "name": "mine", **tables, "drive": drives}))
+    members = dict.fromkeys(one.on for one in Structure.of(result.linkage).bonds)
+    masses = [
+        {"of": name, "mass_kg": 2, "at_mm": [7, 5], "inertia_kg_m2": 0.01} for name in members
+    ]
+    more = {**tables, "drive": drives, "mass": masses, "gravity": {"direction_deg": -90}}
+    made = gc.build(gc.design({"kind": "mechanism", "name": "mine", **more})).study("forces")
+    assert made.facts["forces.error"] < 1e-9
+    assert all(np.isfinite(one).all() for one in made.columns.values())
