@@ -37,6 +37,7 @@ GROUPS: Final = {
     "tables of mechanisms": "What is asked for, loads, and chains",
     "torque of a mechanism": "Torque (`gearcam torque`)",
     "forces of a mechanism": "Forces in joints (`gearcam forces`)",
+    "precision of a mechanism": "Precision of mechanisms (`gearcam precision`)",
     "globoidal cams": "Walls and hold",
     "rows of tables": "Tables of laws and motions",
     "solids of globoidal cams": "Solids",

@@ -24,14 +24,13 @@ RTR1 and RTT with their members exchanged.
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
 
-from gearcam.linkages.plane import Frame, conjugate, cross, imaginary, real, square
+from gearcam.linkages.plane import Frame, conjugate, cross, imaginary, parts, real, square, turned
 from gearcam.numeric import jets
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet
@@ -213,9 +212,9 @@ def _rrr(first: Jet, second: Jet, sizes: Lengths, sign: Sign) -> Solved:
 
 @_OPEN
 def _rrt(first: Jet, guide: Frame, sizes: Lengths, sign: Sign) -> Solved:
-    rod, arm, turn = sizes.first, sizes.second, cmath.exp(1j * sizes.gamma2)
+    rod, arm, turn = sizes.first, sizes.second, turned(sizes.gamma2)
     ahead = guide.direction
-    place = (guide.origin - first) * conjugate(ahead) + arm * turn
+    place = (guide.origin - first) * conjugate(ahead) + turn * arm
     off = imaginary(place)
     # as a product, exact near the ends
     room = (rod - off) * (rod + off)
@@ -242,17 +241,17 @@ def rtr_distance(across: float, share: float) -> float:
 
 @_OPEN
 def _rtr(first: Jet, second: Jet, sizes: Lengths, sign: Sign) -> Solved:
-    arm, beta = sizes.second, sizes.beta
+    turn = turned(sizes.beta)
+    along, across = parts(turn * sizes.second)
     way = second - first
     distance = square(way)
-    across = arm * np.sin(beta)
     room = distance - across * across
     reach = _root(room, sign)
-    slide = reach + arm * np.cos(beta)
+    slide = reach + along
     # the guide's direction; where the arm is 0 this is the way itself
-    guide = way / (reach - 1j * across)
+    guide = way / (reach - across * 1j)
     joint = first + guide * slide
-    frames = Frame(first, guide), Frame(second, guide * cmath.exp(1j * beta))
+    frames = Frame(first, guide), Frame(second, guide * turn)
     return Solved(joint, frames, {"member1": slide}, (room,), (distance,), distance + _NEAR)
 
 
@@ -273,7 +272,7 @@ def rtr_reach(solved: Solved, sizes: Lengths) -> Jet:
 
 @_OPEN
 def _trt(first: Frame, second: Frame, sizes: Lengths, _: Sign) -> Solved:
-    turns = cmath.exp(1j * sizes.gamma1), cmath.exp(1j * sizes.gamma2)
+    turns = turned(sizes.gamma1), turned(sizes.gamma2)
     one, two = first.direction * turns[0], second.direction * turns[1]
     way = second.origin - first.origin + two * sizes.second - one * sizes.first
     sine = cross(first.direction, second.direction)
@@ -289,13 +288,14 @@ def _trt(first: Frame, second: Frame, sizes: Lengths, _: Sign) -> Solved:
 
 
 def _rtt(first: Jet, guide: Frame, sizes: Lengths, _: Sign) -> Solved:
-    second = guide.direction * cmath.exp(1j * sizes.gamma2)
-    one = second * cmath.exp(-1j * sizes.beta)
+    turn = turned(sizes.gamma2)
+    second = guide.direction * turn
+    one = second * turned(-sizes.beta)
     joint = first + one * sizes.first
     place = (joint - guide.origin) * conjugate(guide.direction)
-    sine = np.sin(sizes.gamma2)
+    cosine, sine = parts(turn)
     along = imaginary(place) / sine
-    slide = real(place) - along * np.cos(sizes.gamma2)
+    slide = real(place) - along * cosine
     frames = Frame(first, one), Frame(guide.origin + guide.direction * slide, second)
     return Solved(joint, frames, {"guide2": slide, "member2": along}, ())
 

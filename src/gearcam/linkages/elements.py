@@ -7,11 +7,11 @@ on its guide has the name of its dyad's joint with a word behind: see `Dyad`.
 
 from __future__ import annotations
 
-import cmath
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
-from typing import ClassVar, Final
+from dataclasses import dataclass, replace
+from typing import ClassVar, Final, NamedTuple
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from gearcam.base.display import ShortRepr
 from gearcam.linkages.bonds import Bond, Hinge, PushDrive, ShaftDrive, SlidingJoint
 from gearcam.linkages.dyads import DYADS, DyadType, Lengths, Passage, Sign, Solved
 from gearcam.linkages.known import GROUND, Known
-from gearcam.linkages.plane import Frame, towards
+from gearcam.linkages.plane import Frame, towards, turned
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet
 
@@ -28,6 +28,33 @@ Law = Callable[[Array, int], Jet]
 
 Carriers = Mapping[str, str]
 """Members by the names of the joints, frames and members that are fixed to them."""
+
+
+class Dimension(NamedTuple):
+    """A length or an angle of a part.
+
+    Attributes
+    ----------
+    name : str
+        As in ``rod.length``.
+    field : str
+        Of the part.
+    angle : bool
+        Whether it is an angle, rad; else a length, mm.
+    unit : complex
+        What one of it adds to the field: 1j of the y of a point.
+    """
+
+    name: str
+    field: str
+    angle: bool = False
+    unit: complex = 1.0
+
+
+def _of_point(name: str) -> Iterator[Dimension]:
+    """Yield the coordinates of a point."""
+    yield Dimension(f"{name}.x", "at")
+    yield Dimension(f"{name}.y", "at", unit=1j)
 
 
 class Element(ABC):
@@ -61,6 +88,23 @@ class Element(ABC):
         """
         del carriers
         return {}
+
+    def dimensions(self) -> Iterator[Dimension]:
+        """Yield its lengths and angles, which may deviate."""
+        yield from ()
+
+    def deviated(self, dimension: Dimension, by: Jet | float) -> Element:
+        """Return it with a deviation of one of its dimensions.
+
+        Parameters
+        ----------
+        dimension : Dimension
+            One of `dimensions`.
+        by : Jet or float, mm or rad
+            How much it is larger.
+        """
+        value = getattr(self, dimension.field)
+        return replace(self, **{dimension.field: value + by * dimension.unit})  # pyright: ignore[reportArgumentType]
 
     def bonds(self, carriers: Carriers) -> Iterator[Bond]:
         """Yield what joins its members to others, and drives them.
@@ -148,6 +192,10 @@ class MemberPoint(ShortRepr, Element):
         """Return its member (see `Element`)."""
         return {self.name: carriers[self.on]}
 
+    def dimensions(self) -> Iterator[Dimension]:
+        """Yield its coordinates."""
+        yield from _of_point(self.name)
+
 
 @dataclass(frozen=True)
 class GuideLine(ShortRepr, Element):
@@ -175,12 +223,17 @@ class GuideLine(ShortRepr, Element):
     def solve(self, known: Known) -> None:
         """Add its frame."""
         carrier = known.frame(self.on)
-        direction = carrier.direction * cmath.exp(1j * self.direction)
+        direction = carrier.direction * turned(self.direction)
         known.given[self.name] = Frame(carrier.at(self.at), direction)
 
     def carried(self, carriers: Carriers) -> Carriers:
         """Return its member (see `Element`)."""
         return {self.name: carriers[self.on]}
+
+    def dimensions(self) -> Iterator[Dimension]:
+        """Yield the coordinates of its origin, and its direction."""
+        yield from _of_point(self.name)
+        yield Dimension(f"{self.name}.direction", "direction", angle=True)
 
 
 @dataclass(frozen=True)
@@ -218,7 +271,7 @@ class Crank(ShortRepr, Element):
         direction = towards(known.jet(self.shaft) + self.start)
         frame = Frame(known.jet(self.center), direction)
         known.given[self.name] = frame
-        known.given[self.joint] = frame.at(complex(self.length))
+        known.given[self.joint] = frame.at(self.length)
 
     def carried(self, carriers: Carriers) -> Carriers:
         """Return itself (see `Element`)."""
@@ -230,6 +283,11 @@ class Crank(ShortRepr, Element):
         ends = {"on": self.name, "by": carriers[self.center]}
         yield Hinge(name=self.center, place=self.center, **ends)
         yield ShaftDrive(name=self.shaft, shaft=self.shaft, **ends)
+
+    def dimensions(self) -> Iterator[Dimension]:
+        """Yield its length, and its angle on the shaft."""
+        yield Dimension(f"{self.name}.length", "length")
+        yield Dimension(f"{self.name}.angle", "start", angle=True)
 
 
 @dataclass(frozen=True)
@@ -255,6 +313,10 @@ class WoundWay(ShortRepr, Element):
     def solve(self, known: Known) -> None:
         """Add the way."""
         known.given[self.name] = known.jet(self.shaft) * self.radius
+
+    def dimensions(self) -> Iterator[Dimension]:
+        """Yield the wheel's radius; larger is away from 0."""
+        yield Dimension(f"{self.name}.radius", "radius", unit=math.copysign(1.0, self.radius))
 
 
 @dataclass(frozen=True)
@@ -425,6 +487,24 @@ class Dyad(ShortRepr, Element):
         known.given[self.joint] = solved.joint
         known.given |= dict(zip(self.members, solved.frames, strict=True))
         known.given |= {f"{self.joint}.{name}": one for name, one in solved.slides.items()}
+
+    def dimensions(self) -> Iterator[Dimension]:
+        """Yield its lengths, and the angles between its members and guides; not those that are 0.
+
+        A length that is 0 is none: what slides has its joint on the guide.
+        """
+        sizes = self.lengths
+        for member, field in zip(self.members, ("first", "second"), strict=True):
+            if getattr(sizes, field) != 0.0:
+                yield Dimension(f"{member}.length", field)
+        for field in ("beta", "gamma1", "gamma2"):
+            if getattr(sizes, field) != 0.0:
+                yield Dimension(f"{self.joint}.{field}", field, angle=True)
+
+    def deviated(self, dimension: Dimension, by: Jet | float) -> Dyad:
+        """Return it with a `dimension` that is larger `by` some (see `Element`)."""
+        value = getattr(self.lengths, dimension.field)
+        return replace(self, lengths=self.lengths._replace(**{dimension.field: value + by}))
 
     @property
     def _guiding(self) -> int | None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import cmath
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -63,6 +64,18 @@ def towards(angle: Jet) -> Jet:
     """Return the unit vectors at angles, rad."""
     sine, cosine = jets.sin_cos(angle)
     return cosine + sine * 1j
+
+
+def turned(angle: Jet | float) -> Any:
+    """Return the unit vector at an angle, rad: of a number a number, of a jet a jet."""
+    return towards(angle) if isinstance(angle, Jet) else cmath.exp(1j * angle)
+
+
+def parts(vector: Any) -> tuple[Any, Any]:
+    """Return the x and y coordinates of a vector, of a number or a jet."""
+    if isinstance(vector, Jet):
+        return real(vector), imaginary(vector)
+    return vector.real, vector.imag
 
 
 def turning(direction: Jet) -> Jet:

@@ -140,7 +140,9 @@ def unknown(summary: dict[str, Any], page: str) -> set[str]:
     names = set(re.findall(r"\w+", " ".join(re.findall(r"`([^`]+)`", page))))
     walls = r"(?:inner|outer|lower|upper|relief|1|2)_"
     parts = {*summary.get("solids", {}), *summary["accuracy"].get("dxf_mm", {})}
-    parts |= {*summary.get("forces", {}).get("joints", {})}  # names of the design's own
+    own = summary.get("precision", {}).get("outputs", {})  # names of the design's own
+    parts |= {*summary.get("forces", {}).get("joints", {}), *own}
+    parts |= {name for one in own.values() for name in one["dimensions"]}
     found = {re.sub(f"^{walls}", "", key) for key in keys(summary)} - parts
     units = {key: re.sub(r"per_mm(\d?)$", r"per_rad\1", key) for key in found}
     return {key for key, name in units.items() if not {key, name.replace("deg", "mm")} & names}
@@ -174,6 +176,10 @@ STUDIES: dict[tuple[str, str], tuple[str, dict[str, Any]]] = {
     ("cam", "precision"): ("plate_cam_offset_roller", {}),
     ("spatial-cam", "developed"): ("cylinder_cam", {"developed.steps": 24}),
     ("mechanism", "torque"): ("nail_machine_slide", {"compare": []}),
+    ("mechanism", "precision"): (
+        "four_bar",
+        {"precision.length_tolerance_mm": 0.1, "precision.trials": 2},
+    ),
     ("mechanism", "forces"): (
         "nail_machine_slide",
         {"compare": [], "friction.guide": 0.1, "forces.steps": 24},

@@ -23,6 +23,7 @@ from gearcam.kinds.mechanism import drives, names, parts
 from gearcam.kinds.mechanism.asked import TABLES, DwellSpec, IntervalSpec, StretchSpec
 from gearcam.kinds.mechanism.drives import CompareSpec, MachineDrive
 from gearcam.kinds.mechanism.keys import NAME
+from gearcam.kinds.mechanism.tolerances import MachinePrecisionSpec, ToleranceSpec
 from gearcam.kinds.shared import ACCURACY, AccuracySpec, ForcesSpec, GoalSpec
 from gearcam.mechanics.mass import GravitySpec
 from gearcam.results.kind import Kind, Study, studies_of
@@ -55,6 +56,14 @@ STUDIES: Final = studies_of(
         compute=deferred(f"{_HERE}.forces:study_forces"),
         demand=deferred(f"{_HERE}.torque:demand"),
         repeats=("loads-unused",),
+    ),
+    Study(
+        name="precision",
+        key="precision",
+        doc="Compute deviations of outputs by tolerances; write DIR/NAME/precision.csv.",
+        done="studied",
+        table="precision",
+        compute=deferred(f"{_HERE}.precision:study_precision"),
     ),
     ACCURACY,
 )
@@ -190,6 +199,10 @@ class MechanismDesign(Design):
         The direction of gravity.
     forces : ForcesSpec
         Settings of the study of the forces in joints.
+    tolerance : sequence of ToleranceSpec
+        Tolerances of single dimensions.
+    precision : MachinePrecisionSpec
+        Tolerances of all others, clearance, and random machines.
     torque : TorqueSpec
         Settings of the study of the driver's moment.
     output : MechanismOutput
@@ -233,6 +246,8 @@ class MechanismDesign(Design):
     friction: parts.MachineFrictionSpec = field(default_factory=parts.MachineFrictionSpec)
     gravity: GravitySpec = field(default_factory=GravitySpec)
     forces: ForcesSpec = field(default_factory=ForcesSpec)
+    tolerance: tuple[ToleranceSpec, ...] = ()
+    precision: MachinePrecisionSpec = field(default_factory=MachinePrecisionSpec)
     torque: TorqueSpec = field(default_factory=TorqueSpec)
     output: MechanismOutput = field(default_factory=MechanismOutput)
     accuracy: AccuracySpec = field(default_factory=AccuracySpec)
@@ -254,8 +269,19 @@ KIND: Final = Kind(
     result=deferred(f"{_HERE}.result:MechanismResult"),
     required=("drive",),
     problems=_problems,
-    check_modules=("gearcam.linkages.checks", f"{_HERE}.torque", f"{_HERE}.force_checks"),
-    check_groups=("mechanisms", TABLES, "torque of a mechanism", "forces of a mechanism"),
+    check_modules=(
+        "gearcam.linkages.checks",
+        f"{_HERE}.torque",
+        f"{_HERE}.force_checks",
+        f"{_HERE}.tolerances",
+    ),
+    check_groups=(
+        "mechanisms",
+        TABLES,
+        "torque of a mechanism",
+        "forces of a mechanism",
+        "precision of a mechanism",
+    ),
     example={
         "drive": [{"name": "motor", "even": True, "speed_rpm": 60}],
         "joint": [{"name": "D", "at_mm": [110, 0]}],

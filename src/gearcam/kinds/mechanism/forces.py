@@ -27,6 +27,7 @@ from gearcam.results.study import StudyResult
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.result import MechanismResult
     from gearcam.linkages.friction import Friction
+    from gearcam.linkages.linkage import Linkage
     from gearcam.numeric.arrays import Array, Ints, Mask
     from gearcam.results.study import Progress
 
@@ -66,13 +67,8 @@ class JointForces:
 
     @cached_property
     def labels(self) -> dict[Bond, str]:
-        """Names of joints, guides and drives: with the member where a name has several."""
-        names = {one: _label(one) for one in self.structure.bonds}
-        kept = [*names.values()]
-        return {
-            one: name if kept.count(name) == 1 else f"{name}_{one.on}"
-            for one, name in names.items()
-        }
+        """Names of joints, guides and drives in tables."""
+        return bond_names(self.structure)
 
     @cached_property
     def friction(self) -> dict[str, Friction[Any]]:
@@ -148,9 +144,22 @@ def _named(bond: Bond) -> str:
     return bond.name.removesuffix(center_of("")).removesuffix(way_of(""))
 
 
-def _label(bond: Bond) -> str:
-    """Return the name of a bond in tables."""
-    return _named(bond) if isinstance(bond, Hinge | SlidingJoint) else f"{bond.name}_drive"
+def bond_names(structure: Structure) -> dict[Bond, str]:
+    """Return the names of joints, guides and drives: with the member where a name has several."""
+    names = {
+        one: _named(one) if isinstance(one, Hinge | SlidingJoint) else f"{one.name}_drive"
+        for one in structure.bonds
+    }
+    kept = [*names.values()]
+    return {
+        one: name if kept.count(name) == 1 else f"{name}_{one.on}" for one, name in names.items()
+    }
+
+
+def joint_names(linkage: Linkage) -> dict[Bond, str]:
+    """Return the names of the hinges and guides of a linkage (see `bond_names`)."""
+    names = bond_names(Structure.of(linkage))
+    return {one: name for one, name in names.items() if isinstance(one, Hinge | SlidingJoint)}
 
 
 def study_forces(result: MechanismResult, progress: Progress) -> StudyResult:

@@ -8,6 +8,7 @@ from gearcam.kinds.mechanism.drives import CompareSpec, MachineDrive
 from gearcam.kinds.mechanism.parts import ACTIONS, PARTS
 from gearcam.kinds.mechanism.parts.friction import BearingSpec, MachineFrictionSpec
 from gearcam.kinds.mechanism.result import MechanismResult
+from gearcam.kinds.mechanism.tolerances import MachinePrecisionSpec, ToleranceSpec
 from gearcam.kinds.shared import AccuracySpec, ForcesSpec, GoalSpec
 from gearcam.mechanics.mass import GravitySpec
 
@@ -22,10 +23,12 @@ __all__ = [
     "IntervalSpec",
     "MachineDrive",
     "MachineFrictionSpec",
+    "MachinePrecisionSpec",
     "MechanismDesign",
     "MechanismOutput",
     "MechanismResult",
     "StretchSpec",
+    "ToleranceSpec",
     "TorqueSpec",
 ]
 
