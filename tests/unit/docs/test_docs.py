@@ -143,6 +143,7 @@ def unknown(summary: dict[str, Any], page: str) -> set[str]:
     own = summary.get("precision", {}).get("outputs", {})  # names of the design's own
     parts |= {*summary.get("forces", {}).get("joints", {}), *own}
     parts |= {name for one in own.values() for name in one["dimensions"]}
+    parts |= {*summary.get("balance", {}).get("counterweights", {})}
     found = {re.sub(f"^{walls}", "", key) for key in keys(summary)} - parts
     units = {key: re.sub(r"per_mm(\d?)$", r"per_rad\1", key) for key in found}
     return {key for key, name in units.items() if not {key, name.replace("deg", "mm")} & names}
@@ -176,6 +177,13 @@ STUDIES: dict[tuple[str, str], tuple[str, dict[str, Any]]] = {
     ("cam", "precision"): ("plate_cam_offset_roller", {}),
     ("spatial-cam", "developed"): ("cylinder_cam", {"developed.steps": 24}),
     ("mechanism", "torque"): ("nail_machine_slide", {"compare": []}),
+    ("mechanism", "balance"): (
+        "quick_return",
+        {
+            "mass": [{"of": "crank", "mass_kg": 2, "at_mm": [10, 0]}],
+            "balance": {"counterweights": ["crank"], "radius_mm": 30},
+        },
+    ),
     ("mechanism", "precision"): (
         "four_bar",
         {"precision.length_tolerance_mm": 0.1, "precision.trials": 2},

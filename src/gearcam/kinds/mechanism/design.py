@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.brought import group_of
 from gearcam.base.display import ShortRepr
-from gearcam.base.quantities import ANGLE, COUNT, LENGTH, TEXT, fixed, param
+from gearcam.base.quantities import ANGLE, COUNT, LENGTH, TEXT, fixed, param, positive_length
 from gearcam.base.registry import DeferredMapping, deferred
-from gearcam.base.rules import distinct
+from gearcam.base.rules import distinct, needs
 from gearcam.designs.design import Design
 from gearcam.designs.outputs import OutputSpec, files_param, pose_param, studies_param
 from gearcam.kinds.mechanism import drives, names, parts
@@ -65,6 +65,16 @@ STUDIES: Final = studies_of(
         table="precision",
         compute=deferred(f"{_HERE}.precision:study_precision"),
     ),
+    Study(
+        name="balance",
+        key="balance",
+        doc="Compute shaking force and moment, and counterweights; write DIR/NAME/balance.csv.",
+        done="computed",
+        table="balance",
+        compute=deferred(f"{_HERE}.balance:study_balance"),
+        demand=deferred(f"{_HERE}.balance:demand"),
+        repeats=("loads-unused",),
+    ),
     ACCURACY,
 )
 """The studies by name."""
@@ -91,6 +101,45 @@ class TorqueSpec(ShortRepr):
         le=100000,
         doc="number of even steps of the master's range; both sides of knots and of the ends of "
         "loads are added",
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class BalanceSpec(ShortRepr):
+    """Counterweights against the shaking force of a mechanism.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.BalanceSpec(counterweights=("crank", "rocker"))
+    BalanceSpec(counterweights=('crank', 'rocker'))
+    """
+
+    counterweights: tuple[str, ...] | None = param(
+        TEXT,
+        default=None,
+        min_length=1,
+        example=["crank"],
+        doc="members that turn about a fixed hinge and get a counterweight",
+    )
+    direction: float | None = param(
+        ANGLE,
+        default=None,
+        ge=-360,
+        le=360,
+        example=90,
+        doc="direction in which the force is to be least; in all if left out",
+    )
+    radius: float | None = positive_length(
+        example=60, doc="distance of the counterweights from their hinges, for the moment"
+    )
+    harmonics: int = param(COUNT, default=6, ge=1, le=100, doc="number of harmonics that are told")
+    steps: int = param(COUNT, default=720, ge=12, le=100000, doc="even steps of the range")
+
+    rules = (
+        distinct("counterweights", "member"),
+        needs("direction", "counterweights"),
+        needs("radius", "counterweights"),
     )
 
 
@@ -203,6 +252,8 @@ class MechanismDesign(Design):
         Tolerances of single dimensions.
     precision : MachinePrecisionSpec
         Tolerances of all others, clearance, and random machines.
+    balance : BalanceSpec
+        Counterweights.
     torque : TorqueSpec
         Settings of the study of the driver's moment.
     output : MechanismOutput
@@ -248,6 +299,7 @@ class MechanismDesign(Design):
     forces: ForcesSpec = field(default_factory=ForcesSpec)
     tolerance: tuple[ToleranceSpec, ...] = ()
     precision: MachinePrecisionSpec = field(default_factory=MachinePrecisionSpec)
+    balance: BalanceSpec = field(default_factory=BalanceSpec)
     torque: TorqueSpec = field(default_factory=TorqueSpec)
     output: MechanismOutput = field(default_factory=MechanismOutput)
     accuracy: AccuracySpec = field(default_factory=AccuracySpec)

@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 from gearcam.kinds.mechanism.asked import DwellSpec, IntervalSpec, StretchSpec
-from gearcam.kinds.mechanism.design import MechanismDesign, MechanismOutput, TorqueSpec
+from gearcam.kinds.mechanism.design import (
+    BalanceSpec,
+    MechanismDesign,
+    MechanismOutput,
+    TorqueSpec,
+)
 from gearcam.kinds.mechanism.drives import CompareSpec, MachineDrive
 from gearcam.kinds.mechanism.parts import ACTIONS, PARTS
 from gearcam.kinds.mechanism.parts.friction import BearingSpec, MachineFrictionSpec
@@ -14,6 +19,7 @@ from gearcam.mechanics.mass import GravitySpec
 
 __all__ = [
     "AccuracySpec",
+    "BalanceSpec",
     "BearingSpec",
     "CompareSpec",
     "DwellSpec",

@@ -181,7 +181,7 @@ def loads_unused(result: Any, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """
     several = {title: one for title, one in vars(result.design).items() if isinstance(one, tuple)}
     given = [title for title, one in several.items() if one and isinstance(one[0], MachineAction)]
-    if given and not {"torque", "forces"} & {*result.design.output.studies}:
+    if given and not {"torque", "forces", "balance"} & {*result.design.output.studies}:
         yield Remark(
             "Only the studies of torque and forces use loads, masses and springs: "
             'gearcam torque FILE, gearcam forces FILE, or studies = ["torque", "forces"].',
