@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from fractions import Fraction
+from typing import TYPE_CHECKING, Final
 
-from gearcam.base.quantities import COUNT, RPM, TEXT, nested, param
+from gearcam.base.numerals import formatted
+from gearcam.base.quantities import NUMBER, RPM, TEXT, nested, param
 from gearcam.base.rules import Breach, exactly_one
 from gearcam.designs.design import Design
 from gearcam.designs.faults import Fault, show
@@ -14,6 +16,13 @@ from gearcam.kinds.mechanism.keys import NameUse, Sort, WithNames, angle_param, 
 
 if TYPE_CHECKING:
     from gearcam.designs.kind import Examined
+
+
+_DENOMINATOR: Final = 12
+"""Largest denominator of a drive's ratio: turns of the master in a cycle."""
+
+_SAME_RATIO: Final = 1e-6
+"""Difference of a ratio from a fraction of which it is the decimals."""
 
 
 class WrittenDrive(WithNames):
@@ -95,8 +104,12 @@ class MachineDrive(WrittenDrive):
     speed: float | None = param(
         RPM, default=None, gt=0, le=1e6, example=180, doc="mean speed of the driver, of the master"
     )
-    ratio: int = param(
-        COUNT, default=1, ge=-100, le=100, doc="turns of this drive's driver per turn of the master"
+    ratio: float = param(
+        NUMBER,
+        default=1.0,
+        ge=-100,
+        le=100,
+        doc="turns per turn of the master: a fraction of small whole numbers",
     )
     phase: float = angle_param(doc="angle of this drive's driver at the master's zero", default=0.0)
     span: tuple[float, float] | None = angle_param(
@@ -114,11 +127,24 @@ class MachineDrive(WrittenDrive):
 
     rules = (exactly_one("pair", "cam", "even", "slide"),)
 
+    @property
+    def fraction(self) -> Fraction:
+        """Its ratio as a fraction: the nearest one."""
+        return Fraction(self.ratio).limit_denominator(_DENOMINATOR)
+
+    @property
+    def rate(self) -> float:
+        """Turns of its driver per turn of the master, of which a ratio in the file is rounded."""
+        return float(self.fraction)
+
     def problems(self) -> Iterator[Breach]:
         """Yield contradictions: field, index, message, what is allowed."""
         yield from super().problems()
         if not self.ratio:
-            yield "ratio", None, "is 0", "a whole number, negative for the other sense of rotation"
+            yield "ratio", None, "is 0", "a number, negative for the other sense of rotation"
+        elif abs(self.ratio - float(self.fraction)) > _SAME_RATIO:
+            near = f"{formatted(self.rate, 8)}, which is {self.fraction}: the cycle has to end"
+            yield "ratio", None, "is no fraction of small whole numbers", near
         if self.span is not None and self.slide is not None:
             yield "span", None, "is not of a drive that turns", "a pair, a cam or even = true"
         if self.span is not None and self.span[0] >= self.span[1]:
@@ -209,7 +235,7 @@ def _without_effect(number: int, one: MachineDrive) -> Iterator[Fault]:
     """Yield keys that a drive is given in vain."""
     if not number or one.slide is not None:
         why = "the first drive is the master" if not number else "its formula is in the master's q"
-        for key, value, usual in (("ratio", one.ratio, 1), ("phase_deg", one.phase, 0.0)):
+        for key, value, usual in (("ratio", one.ratio, 1.0), ("phase_deg", one.phase, 0.0)):
             if value != usual:
                 yield Fault(("drive", number, key), f"has no effect: {why}", value, f"{usual:g}")
     if number and one.speed is not None:

@@ -196,7 +196,7 @@ def _back(drive: PlacedDrive, turns: int) -> bool:
         return _repeats(drive, drive.places, end) and _repeats(
             drive, drive.places_in(0.0, 2.0 * end) % end, end
         )
-    ends = np.array([0.0, drive.spec.ratio * turns * _TURN])
+    ends = np.array([0.0, drive.spec.rate * turns * _TURN])
     shafts = [one.law for one in drive.moved.values() if not one.along]
     found = [float(np.diff(np.asarray(law(ends, 0).c[0]))[0]) for law in shafts]
     return all(abs(math.remainder(end, _TURN)) < _WHOLE * turns for end in found)

@@ -267,10 +267,10 @@ class PlacedDrive(ShortRepr):
         q : (n,) array, rad
             The master's angles.
         """
-        return self.spec.ratio * q + self.spec.phase
+        return self.spec.rate * q + self.spec.phase
 
     def _over_master(self, law: Law, factor: float, master: bool) -> Law:
-        ratio = float(self.spec.ratio)
+        ratio = self.spec.rate
 
         def over(q: Array, order: int) -> Jet:
             x = q if master else self._beside_knots(self.own(q), ratio)
@@ -343,7 +343,7 @@ class PlacedDrive(ShortRepr):
         ends = sorted(self.own(np.array([low, high])))
         turns = range(math.floor(ends[0] / self.period), math.ceil(ends[1] / self.period) + 1)
         every = [places + k * self.period for k in turns] if self.closed else [places]
-        found = (np.concatenate(every) - self.spec.phase) / self.spec.ratio
+        found = (np.concatenate(every) - self.spec.phase) / self.spec.rate
         return np.unique(found[(found > low) & (found < high)])
 
 

@@ -72,6 +72,51 @@ def test_what_has_no_effect_is_refused(key: str, value: float) -> None:
         FOUR_BAR.with_({key: value})
 
 
+def carrier(ratio: float) -> Any:
+    """An arm of 60 mm on a carrier of 100 mm."""
+    return gc.design({
+        "kind": "mechanism", "name": "arms",
+        "drive": [{"name": "m", "even": True}, {"name": "n", "even": True, "ratio": ratio}],
+        "crank": [{"name": "carrier", "on": "m", "joint": "B", "length_mm": 100},
+                  {"name": "arm", "on": "n", "at": "B", "joint": "P", "length_mm": 60}],
+        "output": {"outputs": ["P"]},
+    })  # fmt: skip
+
+
+@pytest.mark.parametrize(("ratio", "turns"), [(-2.5, 2), (0.333333, 3), (1.75, 4), (-3.0, 1)])
+def test_a_cycle_ends_after_the_denominator_of_a_ratio(ratio: float, turns: int) -> None:
+    result = gc.build(carrier(ratio))
+    assert result.linkage.span == pytest.approx((0.0, 2.0 * math.pi * turns))
+    q = np.linspace(0.0, 2.0 * math.pi * turns, 50)
+    exact = round(ratio * turns) / turns
+    place = 100.0 * np.exp(1j * q) + 60.0 * np.exp(1j * exact * q)
+    found = result.motion(q)
+    assert found["P_x_mm"] == pytest.approx(place.real, abs=1e-9)
+    assert found["P_y_mm"] == pytest.approx(place.imag, abs=1e-9)
+
+
+def test_a_ratio_that_is_no_fraction_is_refused_with_one_that_is() -> None:
+    with pytest.raises(DesignError, match="2.3333333, which is 7/3"):
+        carrier(2.3456)
+
+
+def test_the_length_of_a_guide_is_not_ignored() -> None:
+    """An offset guide is the block's length, at a right angle."""
+    tables = {"kind": "mechanism", "name": "m", "drive": [{"name": "motor", "even": True}],
+              "joint": [{"name": "O", "at_mm": [100, 0]}],
+              "crank": [{"name": "crank", "on": "motor", "joint": "B", "length_mm": 40}]}  # fmt: skip
+    block = {"type": "RTR", "from": "O", "to": "B", "joint": "A", "members": ["lever", "shoe"],
+             "lengths_mm": [0, 15], "beta_deg": 90}  # fmt: skip
+    made = gc.build(gc.design({**tables, "dyad": [block]}))
+    known = made.linkage.at(np.array([0.3, 2.0]), 0)
+    # the pin runs on a line 15 mm beside the hinge
+    way = known.place("B") - 100.0
+    across = np.imag(way * np.conj(known.direction("lever")))
+    assert np.abs(across) == pytest.approx(15.0)
+    with pytest.raises(DesignError, match="lever is the guide: its length has no effect"):
+        gc.design({**tables, "dyad": [block | {"lengths_mm": [30, 15]}]})
+
+
 def test_a_slide_and_a_later_drive_take_no_keys_in_vain() -> None:
     drives = [{"name": "motor", "even": True}, {"name": "push", "slide": "sin(q)", "ratio": 2}]
     with pytest.raises(DesignError, match="its formula is in the master's q"):

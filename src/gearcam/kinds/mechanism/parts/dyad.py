@@ -146,6 +146,11 @@ class DyadSpec(MachinePart):
             yield "beta", None, f"does not apply to {self.type}", "with type RTR, RTT or TTR"
         if self.slide_on == 2 and self.type != "RTR":
             yield "slide_on", None, f"does not apply to {self.type}", "with type RTR"
+        guide = next((k for k in (0, 1) if f"member{k + 1}" in self.kind.slides), None)
+        if guide is not None and self.lengths[guide]:
+            what = f"{self.members[guide]} is the guide: its length has no effect"
+            near = "0; beside its hinge a guide lies by the other length, with beta_deg = 90"
+            yield "lengths", guide, what, near
         for number, gamma in enumerate(self.gammas):
             if gamma and not self.kind.guides[number]:
                 what = f"{self.members[number]} slides on no guide in {self.type}"
