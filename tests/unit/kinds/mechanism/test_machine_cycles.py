@@ -96,7 +96,7 @@ def test_a_cycle_ends_after_the_denominator_of_a_ratio(ratio: float, turns: int)
 
 
 def test_a_ratio_that_is_no_fraction_is_refused_with_one_that_is() -> None:
-    with pytest.raises(DesignError, match="2.3333333, which is 7/3"):
+    with pytest.raises(DesignError, match="which is 7/3"):
         carrier(2.3456)
 
 
@@ -104,7 +104,7 @@ def test_the_length_of_a_guide_is_not_ignored() -> None:
     """An offset guide is the block's length, at a right angle."""
     tables = {"kind": "mechanism", "name": "m", "drive": [{"name": "motor", "even": True}],
               "joint": [{"name": "O", "at_mm": [100, 0]}],
-              "crank": [{"name": "crank", "on": "motor", "joint": "B", "length_mm": 40}]}  # fmt: skip
+              "crank": [{"name": "c", "on": "motor", "joint": "B", "length_mm": 40}]}  # fmt: skip
     block = {"type": "RTR", "from": "O", "to": "B", "joint": "A", "members": ["lever", "shoe"],
              "lengths_mm": [0, 15], "beta_deg": 90}  # fmt: skip
     made = gc.build(gc.design({**tables, "dyad": [block]}))
