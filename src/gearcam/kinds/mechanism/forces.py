@@ -17,6 +17,7 @@ from gearcam.kinds.mechanism.keys import center_of, way_of
 from gearcam.kinds.mechanism.loaded import work_of
 from gearcam.linkages.bonds import Bond, Hinge, ShaftDrive, SlidingJoint
 from gearcam.linkages.friction import GuideFriction
+from gearcam.linkages.known import GROUND
 from gearcam.linkages.reactions import Reactions, Structure, UnheldError, reactions
 from gearcam.numeric import narrowing
 from gearcam.numeric.gauss import gauss_cells
@@ -351,8 +352,9 @@ def _moment(joints: JointForces, q: Array, found: Reactions) -> Fact:
     least, largest = int(np.nanargmin(values)), int(np.nanargmax(values))
     low, high = float(values[least]), float(values[largest])
     noise = _NOISE * max(abs(low), abs(high))
+    label = "moment of the driver" + (", with friction" if joints.friction else "")
     place = f"least at {joints.word(float(q[least]))}, largest at {joints.word(float(q[largest]))}"
-    return Fact(extent(low, high), "moment of the driver", place=place, shown=True, noise=noise)
+    return Fact(extent(low, high), label, place=place, shown=True, noise=noise)
 
 
 def _assumed(joints: JointForces) -> str:
@@ -383,7 +385,9 @@ def _charts(joints: JointForces, q: Array, found: Reactions) -> dict[str, Chart]
         if isinstance(bond, Hinge):
             force = found.force(bond)
             frames = {"in the machine": 1.0 + 0j} | {
-                f"on {one}": found.known.direction(one) for one in (bond.on, bond.by)
+                f"on {one}": found.known.direction(one)
+                for one in (bond.on, bond.by)
+                if one != GROUND
             }
             turned = {label: force * np.conj(way) for label, way in frames.items()}
             charts[f"hodograph_{name}"] = Chart(

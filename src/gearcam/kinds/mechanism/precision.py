@@ -47,6 +47,9 @@ _NOTHING: Final = 1e-12
 _SHOWN: Final = 3
 """Dimensions of each output that are shown: those with the largest deviations."""
 
+_DRAWN: Final = 6
+"""Dimensions of each output that are drawn."""
+
 _PERCENT: Final = (50, 90, 99)
 """Percentiles of random machines."""
 
@@ -350,16 +353,25 @@ def _trial_facts(stem: str, found: Array, unit: str) -> Tree:
     }
 
 
+def _leading(machine: Tolerated, stem: str, found: Errors) -> dict[str, Array]:
+    """Return the largest parts of the deviation of an output, or sensitivities to lengths."""
+    parts = machine.parts(found, stem) if machine.given else found[stem]
+    sizes = {
+        name: float(np.abs(one).max())
+        for name, one in parts.items()
+        if machine.given or not machine.angle(name)
+    }
+    names = sorted(sizes, key=lambda name: -sizes[name])[:_DRAWN]
+    return {name: parts[name] for name in names if sizes[name] > _NOTHING}
+
+
 def _charts(machine: Tolerated, q: Array, found: Errors) -> dict[str, Chart]:
     """Return a chart of each output: parts of its deviation, or its sensitivities to lengths."""
     charts, x = {}, DEG * q
     for stem, one in machine.outputs.items():
         (scale, unit), lines = one.unit, []
-        for name, values in found[stem].items():
-            factor = machine.tolerances[name] if machine.given else 1.0
-            drawn = machine.given or not machine.angle(name)
-            if drawn and np.abs(factor * values).max() > _NOTHING:
-                lines.append(Line(label=name, x=x, y=scale * factor * values))
+        for name, values in _leading(machine, stem, found).items():
+            lines.append(Line(label=name, x=x, y=scale * values))
         if machine.given:
             for label, sums in (("worst case", machine.worst), ("root of squares", machine.rooted)):
                 lines.append(Line(label=label, x=x, y=scale * sums(found, stem)))
