@@ -64,6 +64,7 @@ def main() -> int:
         spatial_cases.of_globoidal_cams,
         linkage_cases.of_linkages,
         load_cases.of_loads,
+        load_cases.of_machines,
         sweep_cases.of_sweeps,
         design_cases.of_cams,
         before_cases.against_before,
