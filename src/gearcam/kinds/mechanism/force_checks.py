@@ -29,12 +29,15 @@ class JointedMachine(ShortRepr):
         Guides in which what slides tips, and where, in words.
     largest : mapping of str to (float, str)
         The largest force, N, of each joint and guide, and where it is, in words.
+    pulled : mapping of str to (float, str)
+        Cams off which their followers are pulled: the largest such force, N, and the ranges.
     """
 
     locked: str
     free: float
     tipping: dict[str, str]
     largest: dict[str, tuple[float, str]]
+    pulled: dict[str, tuple[float, str]]
 
 
 @check("self-locking", kind=CHECKS, severity="error")
@@ -61,6 +64,19 @@ def edge_contact(machine: JointedMachine, limit: float) -> Iterator[Remark]:  # 
     for name, where in machine.tipping.items():
         what = "What slides here tips and presses at both ends: what is longer presses less."
         yield Remark(what, f"{name}, {where}")
+
+
+@check("contact-reverses", kind=CHECKS, severity="note", unit="N")
+def contact_reverses(machine: JointedMachine, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Note where the machine pulls a follower off its cam.
+
+    Looks at: the normal force between each cam and its follower, without the springs and loads of
+    the cam's own design.
+    """
+    for name, (force, where) in machine.pulled.items():
+        what = "Here the machine pulls the follower off its cam, with up to this force along the "
+        what += "normal: the other wall of a groove carries, or a spring must hold it."
+        yield Remark(what, f"{name}, {where}", force)
 
 
 @check(

@@ -12,6 +12,7 @@ from gearcam.base.errors import DesignError, InfeasibleError, Problem
 from gearcam.base.facts import Fact, Tree, extent
 from gearcam.base.findings import run_checks
 from gearcam.kinds.mechanism.asked import DEG
+from gearcam.kinds.mechanism.cam_contact import contact_forces
 from gearcam.kinds.mechanism.force_checks import CHECKS, JointedMachine
 from gearcam.kinds.mechanism.keys import center_of, way_of
 from gearcam.kinds.mechanism.loaded import work_of
@@ -222,7 +223,9 @@ def _places(joints: JointForces) -> Array:
 
     def sought(q: Array) -> Array:
         found = joints.at(q)
-        rows = np.stack([*joints.sizes(found).values(), found.moment, -found.moment])
+        contacts = [force for _, force in contact_forces(joints.result, joints.work, q)]
+        both = [sign * one for one in (found.moment, *contacts) for sign in (1.0, -1.0)]
+        rows = np.stack([*joints.sizes(found).values(), *both])
         return np.where(np.isfinite(rows), rows, -np.inf)
 
     ends = np.append(x[:1], x[:-1]), np.append(x[1:], x[-1:])
@@ -260,12 +263,17 @@ def _machine(joints: JointForces, q: Array, found: Reactions) -> JointedMachine:
             tips = one.tips(found.of(bond))
             if tips.any():
                 tipping[name] = joints.ranges(q, tips)
-    locked = found.locked
+    locked, pulled = found.locked, dict[str, tuple[float, str]]()
+    for name, force in contact_forces(joints.result, joints.work, q):
+        off = force < -_NOISE * np.abs(force).max()
+        if off.any():
+            pulled[name] = (float(-force.min()), joints.ranges(q, off))
     return JointedMachine(
         locked=joints.ranges(q, locked) if locked.any() else "",
         free=_free_share(joints, q) if locked.any() else 1.0,
         tipping=tipping,
         largest=largest,
+        pulled=pulled,
     )
 
 
@@ -291,6 +299,8 @@ def _columns(joints: JointForces, q: Array, found: Reactions) -> dict[str, Any]:
         columns["efficiency"] = np.ma.masked_invalid(_efficiency(found))
     if joints.result.speed is not None:
         columns["power_w"] = columns["torque_nm"] * joints.result.speed
+    for name, force in contact_forces(joints.result, joints.work, q):
+        columns[f"{name}_contact_n"] = force
     for bond, name in joints.labels.items():
         own = found.of(bond).T
         if isinstance(bond, Hinge | SlidingJoint):
@@ -329,6 +339,11 @@ def _facts(joints: JointForces, q: Array, found: Reactions, machine: JointedMach
         }
         for name, (force, where) in machine.largest.items()
     }
+    contacts = {
+        name: {"contact_n": _contact(joints, name, q, force)}
+        for name, force in contact_forces(joints.result, joints.work, q)
+    }
+    tree["cams"] = contacts or None
     tree["locked"] = bool(found.locked.any())
     tree["error"] = Fact(found.apart, "moment by reactions less that by virtual work", unit="")
     return tree | {"assumptions": Fact(_assumed(joints), "assumed", shown=True)}
@@ -345,6 +360,13 @@ def _works(joints: JointForces) -> tuple[float, float]:
 def _on(joints: JointForces, name: str) -> str:
     bond = next(one for one, label in joints.labels.items() if label == name)
     return f"at {name}, of {bond.by} on {bond.on}"
+
+
+def _contact(joints: JointForces, name: str, q: Array, force: Array) -> Fact:
+    most, least = int(force.argmax()), int(force.argmin())
+    place = f"least at {joints.word(float(q[least]))}, largest at {joints.word(float(q[most]))}"
+    label = f"normal force between the cam {name} and its follower"
+    return Fact(extent(float(force[least]), float(force[most])), label, place=place, shown=True)
 
 
 def _moment(joints: JointForces, q: Array, found: Reactions) -> Fact:

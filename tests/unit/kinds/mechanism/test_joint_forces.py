@@ -166,3 +166,18 @@ def test_every_machine_has_forces(machine: str) -> None:
     made = gc.build(gc.design({"kind": "mechanism", "name": "mine", **more})).study("forces")
     assert made.facts["forces.error"] < 1e-9
     assert all(np.isfinite(one).all() for one in made.columns.values())
+
+
+def test_the_contact_force_of_a_cam_is_that_of_its_pressure_angle() -> None:
+    load = [{"on": "table", "force_n": [300, -500]}]
+    result = gc.build(gc.load("profiles/two_cam_table.toml").with_({"load": load}))
+    made = result.study("forces")
+    q = np.radians(made.columns["theta_deg"])
+    for drive, force in zip(result.drives, (-300.0, 500.0), strict=True):
+        turned = drive.own(q) % (2.0 * np.pi)
+        angle = np.radians(drive.result.motion(turned)["pressure_angle_deg"])
+        known = made.columns[f"{drive.spec.name}_contact_n"]
+        assert known == pytest.approx(force / np.cos(angle), rel=1e-9)
+    (note,) = (one for one in made.study_findings if one.code == "contact-reverses")
+    assert note.where.startswith("cam_x, ")
+    assert note.value == pytest.approx(-made.facts["forces.cams.cam_x.contact_n.min"])
