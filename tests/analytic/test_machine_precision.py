@@ -112,7 +112,7 @@ def quantities(linkage: Any) -> list[str]:
 
 def test_random_linkages_have_the_sensitivities_of_differences() -> None:
     compared = 0
-    for index in range(40):
+    for index in range(20):
         try:
             linkage = settled(drawn(17, index).linkage)
         except NotClosingError:
@@ -127,7 +127,7 @@ def test_random_linkages_have_the_sensitivities_of_differences() -> None:
             if np.abs(own).max() < 1e4:  # not nearly singular
                 assert known / (2.0 * h) == pytest.approx(own, rel=1e-5, abs=2e-5)
                 compared += 1
-    assert compared > 300
+    assert compared > 150
 
 
 @cache

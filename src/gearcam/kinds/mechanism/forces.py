@@ -270,7 +270,7 @@ def _machine(joints: JointForces, q: Array, found: Reactions) -> JointedMachine:
             pulled[name] = (float(-force.min()), joints.ranges(q, off))
     return JointedMachine(
         locked=joints.ranges(q, locked) if locked.any() else "",
-        free=_free_share(joints, q) if locked.any() else 1.0,
+        free=_free_share(joints, q[locked]) if locked.any() else 1.0,
         tipping=tipping,
         largest=largest,
         pulled=pulled,
@@ -278,7 +278,10 @@ def _machine(joints: JointForces, q: Array, found: Reactions) -> JointedMachine:
 
 
 def _free_share(joints: JointForces, q: Array) -> float:
-    """Return up to which share of all coefficients of friction nothing is locked, rounded down."""
+    """Return up to which share of all coefficients of friction nothing is locked, rounded down.
+
+    `q` are the angles that the whole of them locks: with less of it no other one is.
+    """
     low, high = 0.0, 1.0
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
