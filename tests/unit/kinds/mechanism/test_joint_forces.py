@@ -181,3 +181,9 @@ def test_the_contact_force_of_a_cam_is_that_of_its_pressure_angle() -> None:
     (note,) = (one for one in made.study_findings if one.code == "contact-reverses")
     assert note.where.startswith("cam_x, ")
     assert note.value == pytest.approx(-made.facts["forces.cams.cam_x.contact_n.min"])
+
+
+@pytest.mark.parametrize(("studies", "told"), [([], 2), (["torque"], 1), (["forces"], 0)])
+def test_friction_that_nothing_uses_is_told(studies: list[str], told: int) -> None:
+    found = built(friction=RUBBING, output={"studies": studies}).checked
+    assert [one.code for one in found].count("loads-unused") == told

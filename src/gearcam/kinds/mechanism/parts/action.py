@@ -175,9 +175,9 @@ class MachineAction(WithNames):
 
 @check("loads-unused", kind=TABLES, severity="note")
 def loads_unused(result: Any, limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Note loads, masses and springs that nothing uses.
+    """Note loads, masses, springs and friction that nothing uses.
 
-    Looks at: whether the study of the driver's moment, or that of forces is asked for.
+    Looks at: whether a study that uses them is asked for.
     """
     several = {title: one for title, one in vars(result.design).items() if isinstance(one, tuple)}
     given = [title for title, one in several.items() if one and isinstance(one[0], MachineAction)]
@@ -186,4 +186,10 @@ def loads_unused(result: Any, limit: float) -> Iterator[Remark]:  # noqa: ARG001
             "Only the studies of torque and forces use loads, masses and springs: "
             'gearcam torque FILE, gearcam forces FILE, or studies = ["torque", "forces"].',
             ", ".join(given),
+        )
+    rubs = result.design.bearing or result.design.friction != type(result.design.friction)()
+    if rubs and "forces" not in result.design.output.studies:
+        yield Remark(
+            'Only the study of forces has friction: gearcam forces FILE, or studies = ["forces"].',
+            "bearing" if result.design.bearing else "friction",
         )
