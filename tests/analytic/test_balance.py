@@ -130,6 +130,17 @@ def test_the_frame_carries_the_shaking_force_and_the_drive() -> None:
     assert np.abs(sum(own) + shake.force).max() < 1e-10
 
 
+def test_inertia_on_a_shaft_shakes_as_that_of_its_crank() -> None:
+    """Behind a pair, where both are hurried alike."""
+    moments = []
+    for name in ("crank", "pair.wheel2"):
+        mass = [{"of": name, "inertia_kg_m2": 0.01}]
+        design = gearcam.load("profiles/nail_machine_slide.toml").with_({"mass": mass, "load": []})
+        moments.append(gearcam.build(design).study("balance").facts["balance.moment_nm"])
+    assert moments[0] == pytest.approx(moments[1], rel=1e-9)
+    assert moments[0] > 1.0
+
+
 def test_the_study_tells_force_harmonics_and_counterweights() -> None:
     asked = {"counterweights": ["crank", "rocker"], "radius_mm": 40}
     study = four_bar(balance=asked).study("balance")
@@ -149,7 +160,10 @@ def test_the_study_tells_force_harmonics_and_counterweights() -> None:
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"balance": {"counterweights": ["coupler"]}}, "does not turn about a fixed hinge"),
+        (
+            {"balance": {"counterweights": ["coupler"]}},
+            "is no member that turns about a",
+        ),
         ({"balance": {"radius_mm": 4}}, "counterweights"),
         ({"mass": []}, "no member has a mass"),
         ({"drive": [{"name": "motor", "even": True}]}, "is missing"),

@@ -192,3 +192,30 @@ def test_without_tolerances_there_are_sensitivities() -> None:
 def test_what_is_refused(tolerance: Any, words: str) -> None:
     with pytest.raises(DesignError, match=words):
         slider(tolerance=[tolerance]).study("precision")
+
+
+def test_a_dimension_has_one_tolerance() -> None:
+    twice = [{"of": "rod.length", "tolerance_mm": one} for one in (1, 2)]
+    with pytest.raises(DesignError, match="has a tolerance before"):
+        slider(tolerance=twice).study("precision")
+
+
+def test_trials_without_tolerances_are_refused() -> None:
+    with pytest.raises(DesignError, match="has no tolerances to try"):
+        slider(precision={"trials": 10}).study("precision")
+
+
+def test_the_shaft_of_a_drive_by_its_other_name_has_a_place_too() -> None:
+    crank = [{"name": "crank", "on": "motor.shaft", "joint": "B", "length_mm": 100}]
+    spec = {"length_tolerance_mm": 0.1}
+    made = [slider(precision=spec), slider(precision=spec, crank=crank)]
+    worst = [one.study("precision").facts["precision.outputs.C.worst_case_mm"] for one in made]
+    assert worst[0] == pytest.approx(worst[1])
+
+
+def test_clearance_of_a_geneva_wheel_moves_it() -> None:
+    geneva = gearcam.load("profiles/geneva.toml").with_({"precision.clearance_mm": 0.1})
+    study = gearcam.build(geneva).study("precision")
+    worst = [np.max(one) for name, one in study.columns.items() if "worst_case" in name]
+    assert worst
+    assert min(worst) > 0.0

@@ -68,7 +68,11 @@ def shaking(linkage: Linkage, efforts: Sequence[Effort], q: Array, speed: float)
     force, moment = np.zeros(q.shape, dtype=complex), np.zeros(q.shape)
     for effort in efforts:
         if isinstance(effort, InertiaForce):
-            for member, wrench in effort.coordinate.wrenches(held, effort.acting(state)):
+            acting = effort.acting(state)
+            parts = list(effort.coordinate.wrenches(held, acting))
+            if not parts:  # what turns with a shaft
+                moment = moment + acting.real
+            for member, wrench in parts:
                 if member != GROUND:
                     force, moment = force + wrench.force, moment + wrench.moment
     return Shaking(force=force, moment=moment)

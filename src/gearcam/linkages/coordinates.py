@@ -181,7 +181,8 @@ class PointWay(ShortRepr, WorkCoordinate):
     def wrenches(self, held: HeldMembers, force: Plane) -> Iterator[tuple[str, Wrench]]:
         """Yield the `force` at the point of a member that is `held`."""
         along = held.known.direction(self.guide) * self.direction
-        yield from held.force(self.point, force * along)
+        slides = held.slides[self.slide].on if self.slide in held.slides else ""
+        yield from held.force(self.point, force * along, slides)
 
 
 @dataclass(frozen=True)
@@ -283,6 +284,14 @@ class Acting:
         """Its derivative by the driver's angle."""
         found = self._coordinate.rate(self._state.known, self._state.order)
         return found + np.zeros(self._state.q.shape)  # where it is a constant, too
+
+    @property
+    def sense(self) -> Array:
+        """Its direction of motion, 1 or -1; where it reverses that behind."""
+        state = self._state
+        found = self._coordinate.rate(state.known, 1)
+        rate, bend = (np.asarray(one) + np.zeros(state.q.shape) for one in found.c[:2])
+        return np.sign(np.where(rate == 0.0, bend, rate))
 
     @property
     def velocity(self) -> Jet:

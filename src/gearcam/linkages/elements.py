@@ -282,7 +282,8 @@ class Crank(ShortRepr, Element):
         """Yield its bearing and its shaft (see `Element`)."""
         ends = {"on": self.name, "by": carriers[self.center]}
         yield Hinge(name=self.center, place=self.center, **ends)
-        yield ShaftDrive(name=self.shaft, shaft=self.shaft, **ends)
+        # turns are those in the machine: a drive on a member is held by the frame
+        yield ShaftDrive(name=self.shaft, shaft=self.shaft, on=self.name, by=GROUND)
 
     def dimensions(self) -> Iterator[Dimension]:
         """Yield its length, and its angle on the shaft."""

@@ -25,7 +25,7 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.linkages.bonds import Bond, Hinge, SlotPin
 from gearcam.linkages.elements import Carriers, Element, Law
-from gearcam.linkages.known import Known
+from gearcam.linkages.known import GROUND, Known
 from gearcam.linkages.measures import TrackMeasures
 from gearcam.linkages.plane import Frame, towards
 from gearcam.numeric import jets
@@ -210,7 +210,7 @@ class GenevaWheel(ShortRepr, Element):
         yield SlotPin(
             name=f"{self.name}.pin",
             on=self.name,
-            by=by,
+            by=GROUND,
             center=self.center,
             length=self.length,
             start=self.start,

@@ -42,6 +42,12 @@ _SETTLED: Final = 1e-8
 """Change of the reactions in a step, over the largest, at which they are known: the error falls
 with its square."""
 
+_ROUNDING: Final = 1e-9
+"""Share of the largest force that is none: what carries nothing has no friction."""
+
+_FORCES: Final = ("x", "y", "normal", "force", "tension")
+"""Unknowns that are forces; the others are moments."""
+
 _SINGULAR: Final = 1e-6
 """Determinant, over that without friction, that is none: the forces would be a million times as
 large, and lose as many digits."""
@@ -85,6 +91,11 @@ class Structure(ShortRepr):
         """Guides by the quantities that are places on them."""
         return {one.slide: one for one in self.bonds if isinstance(one, SlidingJoint)}
 
+    @property
+    def unknowns(self) -> tuple[str, ...]:
+        """Names of the unknowns, in order."""
+        return tuple(name for one in self.bonds for name in one.unknowns)
+
     @cached_property
     def columns(self) -> dict[Bond, slice]:
         """Which unknowns are those of each bond."""
@@ -126,6 +137,10 @@ class Reactions(ShortRepr):
     def of(self, bond: Bond) -> Array:
         """Return the unknowns of a bond, (n, k)."""
         return self.values[:, self.structure.columns[bond]]
+
+    def carried(self, bond: Bond) -> Array:
+        """Return them without rounding."""
+        return _Equilibrium(self.structure, self.known).carried(bond, self.values)
 
     def force(self, bond: Bond) -> Plane:
         """Return the force of a bond on its member, (n,), N, in the machine's frame."""
@@ -170,7 +185,7 @@ def reactions(
     q: Array,
     *,
     speed: float | None = None,
-    friction: Mapping[str, Friction[Any]] | None = None,
+    friction: Mapping[Bond, Friction[Any]] | None = None,
 ) -> Reactions:
     """Return the forces in the joints of a linkage.
 
@@ -184,8 +199,8 @@ def reactions(
         The driver's angles.
     speed : float, rad/s, optional
         Of the driver.
-    friction : mapping of str to Friction, optional
-        By names of bonds.
+    friction : mapping of Bond to Friction, optional
+        Of hinges and guides.
 
     Returns
     -------
@@ -201,8 +216,7 @@ def reactions(
     held = HeldMembers(state.known, structure.carriers, structure.slides)
     equilibrium = _Equilibrium(structure, state.known)
     loads, moment = equilibrium.loads(efforts, state, held)
-    given = friction or {}
-    pairs = [(one, given[one.name]) for one in structure.bonds if one.name in given]
+    pairs = [(one, own) for one, own in (friction or {}).items() if one in structure.columns]
     free = equilibrium.solved(loads)
     values, room, lost = equilibrium.rubbing(free, loads, pairs)
     works = np.stack([one for bond in structure.bonds for one in bond.works(state.known)], axis=1)
@@ -231,7 +245,7 @@ class _Equilibrium:
         if count != 3 * len(self.rows):
             raise UnheldError(structure.members[-1])
         places = [np.abs(known.place(name)).max() for name in structure.members]
-        self.size = max(1.0, *map(float, places))
+        self.size = float(np.max([1.0, *places]))
         self.matrix = np.zeros((len(known.q), count, count))
         for bond, columns in structure.columns.items():
             for k, unit in enumerate(bond.units(known), start=columns.start):
@@ -249,6 +263,14 @@ class _Equilibrium:
     def _add(self, rows: Array, bond: Bond, wrench: Wrench) -> None:
         self._put(rows, bond.on, wrench)
         self._put(rows, bond.by, wrench.times(np.array(-1.0)))
+
+    def carried(self, bond: Bond, values: Array) -> Array:
+        """Return the unknowns of a bond, (n, k), without rounding, whose sign would be chance."""
+        own = values[:, self.structure.columns[bond]]
+        forces = values[:, [k for k, one in enumerate(self.structure.unknowns) if one in _FORCES]]
+        least = _ROUNDING * np.abs(forces).max(axis=1, initial=0.0)
+        sizes = [1.0 if one in _FORCES else self.size for one in bond.unknowns]
+        return np.where(np.abs(own) > least[:, None] * sizes, own, 0.0)
 
     def loads(
         self, efforts: Sequence[Effort], state: WorkState, held: HeldMembers
@@ -294,7 +316,7 @@ class _Equilibrium:
             tangent, rest, lost = self.matrix.copy(), loads.copy(), np.zeros(len(loads))
             for bond, one in pairs:
                 own = self.structure.columns[bond]
-                found = one.of(bond, self.known, values[:, own])
+                found = one.of(bond, self.known, self.carried(bond, values))
                 column = np.zeros(loads.shape)
                 self._add(column, bond, found.unit)
                 rest += column * found.size[:, None]

@@ -34,7 +34,7 @@ class Pressed(Protocol):
 
     @property
     def shares(self) -> str:
-        """How teeth share the load, in words that end a sentence."""
+        """How teeth share the load, in words within a sentence."""
         ...
 
     def place_of(self, contact: int) -> str:
@@ -66,7 +66,7 @@ class LoadedPair(ShortRepr):
     @property
     def shares(self) -> str:
         """How teeth share the load (see `Pressed`)."""
-        return " (with equal shares of the teeth)"
+        return ", with equal shares of the teeth,"
 
     def at(self, index: int) -> str:
         """Return a phase in words."""
@@ -148,8 +148,8 @@ def contact_pressure(loaded: Pressed, limit: float) -> Iterator[Remark]:
     found = float(loaded.pressure[worst])
     if found > most:
         yield Remark(
-            "The contact pressure is too high: wider or larger wheels, or a smaller load lower it"
-            f"{loaded.shares}.",
+            f"The contact pressure{loaded.shares} is too high: wider or larger wheels, or a smaller "
+            "load lower it.",
             loaded.place_of(worst),
             found,
             limit=most,

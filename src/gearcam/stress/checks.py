@@ -112,8 +112,8 @@ class StressedPair(ShortRepr):
 
     @property
     def shares(self) -> str:
-        """How teeth share the load, in words that end a sentence."""
-        return ", as elastic teeth share it"
+        """How teeth share the load, in words (see `Pressed`)."""
+        return ", with the shares of elastic teeth,"
 
     def place_of(self, contact: int) -> str:
         """Return the phase of a contact in words."""

@@ -23,6 +23,7 @@ from gearcam.linkages.balance import (
     with_counterweights,
 )
 from gearcam.linkages.bonds import Hinge
+from gearcam.linkages.efforts import InertiaForce
 from gearcam.linkages.known import GROUND
 from gearcam.linkages.reactions import Structure
 from gearcam.numeric import narrowing
@@ -64,8 +65,8 @@ def demand(design: Any) -> None:
     """
     if design.drive[0].speed is None:
         what, key, near = "is missing: inertia depends on it", "drive[0].speed_rpm", "above 0"
-    elif not any(one.mass for one in design.mass) and all(one.pair is None for one in design.drive):
-        what, key, near = "no member has a mass", "mass", "a table [[mass]] with mass_kg"
+    elif not design.mass and all(one.pair is None for one in design.drive):
+        what, key, near = "no member has a mass", "mass", "a table [[mass]]"
     else:
         return
     raise DesignError([Problem(what, file=design.source, key=key, allowed=near)])
@@ -118,6 +119,9 @@ def study_balance(result: MechanismResult, progress: Progress) -> StudyResult:
         even[-1] = np.nextafter(high, low)
         weighted = _weighted(result, work) if result.design.balance.counterweights else None
         x = with_both_sides(even, work.knots)
+        if not any(isinstance(one, InertiaForce) for one in work.efforts):
+            what, near = "nothing has a mass", "[[mass]], or density_kg_m3 of the pair's wheels"
+            raise DesignError([Problem(what, file=result.design.source, key="mass", allowed=near)])
         every = [work] if weighted is None else [work, weighted.work]
         q = np.unique(np.concatenate([x, *(_tops(one, x) for one in every)]))
         found = _shaking(work, q)
@@ -162,17 +166,25 @@ def _weighted(result: MechanismResult, work: VirtualWork) -> Weighted:
         for one in Structure.of(result.linkage).bonds
         if isinstance(one, Hinge) and one.by == GROUND and not one.on.endswith(BODY)
     ]
-    for number, name in enumerate(members):
-        if name not in hinged:
-            what, near = f"{name} does not turn about a fixed hinge", ", ".join(hinged)
-            key, source = f"balance.counterweights[{number}]", result.design.source
-            raise DesignError([Problem(what, file=source, key=key, allowed=near)])
+    source, near = result.design.source, ", ".join(hinged)
+    problems = [
+        Problem(
+            f"{name} is no member that turns about a fixed hinge",
+            file=source,
+            key=f"balance.counterweights[{number}]",
+            allowed=near,
+        )
+        for number, name in enumerate(members)
+        if name not in hinged
+    ]
+    if problems:
+        raise DesignError(problems)
     even, speed = _samples(work), float(work.speed or 0.0)
     way = None if spec.direction is None else cmath.exp(1j * spec.direction)
     force = _shaking(work, even).force
     weights = counterweights(work.linkage, members, force, even, speed, direction=way)
-    size = np.abs(weights).max(initial=0.0)
-    weights = np.where(np.abs(weights) > _NONE * size, weights, 0.0)
+    none = _NONE * np.abs(force).max() / (1e-3 * speed**2)  # with which they would do nothing
+    weights = np.where(np.abs(weights) > none, weights, 0.0)
     # the force that is left does not depend on the radius
     linkage, more = with_counterweights(work.linkage, members, weights, spec.radius or 1.0)
     return Weighted(
@@ -221,7 +233,7 @@ def _facts(
     if weighted is None or left is None:
         return tree
     tree["counterweights"] = {
-        name: _weight_facts(name, complex(one))
+        name: _weight_facts(name, complex(one), result.design.balance.radius)
         for name, one in zip(weighted.members, weighted.unbalances.tolist(), strict=True)
     }
     none = _NONE * np.abs(found.force).max()
@@ -235,7 +247,7 @@ def _facts(
     return tree
 
 
-def _weight_facts(name: str, unbalance: complex) -> Tree:
+def _weight_facts(name: str, unbalance: complex, radius: float | None) -> Tree:
     """Return the facts of a counterweight."""
     angle = math.degrees(cmath.phase(unbalance)) % 360.0
     label = f"counterweight of {name}, mass times distance"
@@ -243,6 +255,13 @@ def _weight_facts(name: str, unbalance: complex) -> Tree:
     return {
         "unbalance_kg_mm": Fact(abs(unbalance), label, place=place, unit="kg mm", shown=True),
         "angle_deg": angle,
+        "mass_kg": radius
+        and Fact(
+            abs(unbalance) / radius,
+            f"its mass at {formatted(radius)} mm from the hinge of {name}",
+            unit="kg",
+            shown=True,
+        ),
     }
 
 

@@ -11,7 +11,6 @@ if TYPE_CHECKING:
 
     from gearcam.kinds.mechanism.placed import PlacedDrive
     from gearcam.kinds.mechanism.result import MechanismResult
-    from gearcam.kinds.mechanism.torque import ShaftLoad
     from gearcam.linkages.work import VirtualWork
     from gearcam.numeric.arrays import Array
 
@@ -42,19 +41,12 @@ def contact_forces(
     """
     from gearcam.kinds.mechanism.torque import shaft_loads
 
-    drives = [one for one in result.drives if one.spec.pair is not None or one.spec.cam is not None]
-    loads = {_drive_of(one, drives): one for one in shaft_loads(result, work, q)}
-    for drive in drives:
+    loads = {one.drive: one for one in shaft_loads(result, work, q)}
+    for drive in result.drives:
         if drive.spec.cam is not None:
             exerted = loads[drive.spec.name]
             scale = _KILO if exerted.column.endswith("_nm") else 1.0
             yield drive.spec.name, scale * exerted.values / _effect(drive, q)
-
-
-def _drive_of(load: ShaftLoad, drives: list[PlacedDrive]) -> str:
-    """Return the drive of a load of a follower or wheel."""
-    own = (one.spec.name for one in drives if load.column.startswith(f"{one.spec.name}_"))
-    return next(own, drives[0].spec.name)
 
 
 def _effect(drive: PlacedDrive, q: Array) -> Array:

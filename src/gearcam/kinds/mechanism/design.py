@@ -64,6 +64,7 @@ STUDIES: Final = studies_of(
         done="studied",
         table="precision",
         compute=deferred(f"{_HERE}.precision:study_precision"),
+        repeats=("loads-unused",),
     ),
     Study(
         name="balance",

@@ -23,6 +23,8 @@ class JointedMachine(ShortRepr):
     ----------
     locked : str
         Where friction locks it, in words; empty if nowhere.
+    peak : (float, str)
+        The largest moment of the driver, N m, and where it is, in words.
     free : float
         Share of all coefficients of friction up to which it is locked nowhere.
     tipping : mapping of str to str
@@ -31,13 +33,17 @@ class JointedMachine(ShortRepr):
         The largest force, N, of each joint and guide, and where it is, in words.
     pulled : mapping of str to (float, str)
         Cams off which their followers are pulled: the largest such force, N, and the ranges.
+    slack : mapping of str to str
+        Chains that would have to push, and where, in words.
     """
 
     locked: str
+    peak: tuple[float, str]
     free: float
     tipping: dict[str, str]
     largest: dict[str, tuple[float, str]]
     pulled: dict[str, tuple[float, str]]
+    slack: dict[str, str]
 
 
 @check("self-locking", kind=CHECKS, severity="error")
@@ -50,7 +56,8 @@ def self_locking(machine: JointedMachine, limit: float) -> Iterator[Remark]:  # 
     if machine.locked:
         yield Remark(
             f"Friction locks the machine. With up to {formatted(machine.free, 3)} times the "
-            "coefficients of friction it moves everywhere.",
+            "coefficients of friction it moves everywhere, though near that with very large "
+            "forces.",
             machine.locked,
         )
 
@@ -62,7 +69,7 @@ def edge_contact(machine: JointedMachine, limit: float) -> Iterator[Remark]:  # 
     Looks at: the place of the guide's force, where the length of what slides is given.
     """
     for name, where in machine.tipping.items():
-        what = "What slides here tips and presses at both ends: what is longer presses less."
+        what = "What slides here tips and presses at both ends of its length."
         yield Remark(what, f"{name}, {where}")
 
 
@@ -77,6 +84,16 @@ def contact_reverses(machine: JointedMachine, limit: float) -> Iterator[Remark]:
         what = "Here the machine pulls the follower off its cam, with up to this force along the "
         what += "normal: the other wall of a groove carries, or a spring must hold it."
         yield Remark(what, f"{name}, {where}", force)
+
+
+@check("slack-chain", kind=CHECKS)
+def slack_chain(machine: JointedMachine, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Warn of a chain that would have to push.
+
+    Looks at: the tension of chains that swing a lever.
+    """
+    for name, where in machine.slack.items():
+        yield Remark("Here the chain would have to push: it goes slack.", f"{name}, {where}")
 
 
 @check(

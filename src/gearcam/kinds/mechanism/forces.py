@@ -10,13 +10,17 @@ import numpy as np
 
 from gearcam.base.errors import DesignError, InfeasibleError, Problem
 from gearcam.base.facts import Fact, Tree, extent
-from gearcam.base.findings import run_checks
+from gearcam.base.findings import in_order, run_checks
+from gearcam.base.numerals import formatted
 from gearcam.kinds.mechanism.asked import DEG
 from gearcam.kinds.mechanism.cam_contact import contact_forces
 from gearcam.kinds.mechanism.force_checks import CHECKS, JointedMachine
 from gearcam.kinds.mechanism.keys import center_of, way_of
 from gearcam.kinds.mechanism.loaded import work_of
-from gearcam.linkages.bonds import Bond, Hinge, ShaftDrive, SlidingJoint
+from gearcam.kinds.mechanism.torque import CHECKS as TORQUE
+from gearcam.kinds.mechanism.torque import DriverEffort
+from gearcam.linkages.bonds import Bond, ChainDrive, Hinge, ShaftDrive, SlidingJoint
+from gearcam.linkages.efforts import GRAVITY, INERTIA
 from gearcam.linkages.friction import GuideFriction
 from gearcam.linkages.known import GROUND
 from gearcam.linkages.reactions import Reactions, Structure, UnheldError, reactions
@@ -27,6 +31,7 @@ from gearcam.pictures.charts import Chart, Line
 from gearcam.results.study import StudyResult
 
 if TYPE_CHECKING:
+    from gearcam.kinds.mechanism.parts.friction import BearingSpec
     from gearcam.kinds.mechanism.result import MechanismResult
     from gearcam.linkages.friction import Friction
     from gearcam.linkages.linkage import Linkage
@@ -64,8 +69,12 @@ class JointForces:
 
     def __init__(self, result: MechanismResult) -> None:
         self.result = result
+        demand_no_change_points(result, "forces in joints are")
         self.work = work_of(result.design, result.linkage, result.drives)
         self.structure = Structure.of(self.work.linkage)
+        if not self.structure.members:
+            what, near = "has no members, and so no joints", "the study of torque: gearcam torque"
+            raise InfeasibleError(what, where="drive", nearest=near)
 
     @cached_property
     def labels(self) -> dict[Bond, str]:
@@ -73,27 +82,45 @@ class JointForces:
         return bond_names(self.structure)
 
     @cached_property
-    def friction(self) -> dict[str, Friction[Any]]:
-        """Friction of joints and guides, by the names of bonds."""
-        design, found = self.result.design, dict[str, Any]()
-        every = (one for one in self.structure.bonds if isinstance(one, Hinge | SlidingJoint))
-        joints = {_named(one): one for one in every}
-        for bond in joints.values():
+    def joints(self) -> tuple[Hinge | SlidingJoint, ...]:
+        """Hinges and guides."""
+        return tuple(one for one in self.structure.bonds if isinstance(one, Hinge | SlidingJoint))
+
+    @cached_property
+    def friction(self) -> dict[Bond, Friction[Any]]:
+        """Friction of hinges and guides."""
+        design, found = self.result.design, dict[Bond, Any]()
+        for bond in self.joints:
             own = design.friction.of(bond)
             if own is not None:
-                found[bond.name] = own
+                found[bond] = own
+        problems, seen = list[Problem](), set[str]()
         for number, spec in enumerate(design.bearing):
-            bond = joints.get(spec.on)
-            own = None if bond is None else spec.of(bond)
-            if bond is None or own is None:
-                what, near = f"{spec.on}: no members meet there", ", ".join(joints)
-                if bond is not None:
-                    what = f"{spec.on} is a {'hinge' if isinstance(bond, Hinge) else 'guide'}"
-                    near = "radius_mm for a hinge, length_mm for a guide"
-                key = f"bearing[{number}]"
-                raise DesignError([Problem(what, file=design.source, key=key, allowed=near)])
-            found[bond.name] = own
+            try:
+                found |= self._bearing(spec, again=spec.on in seen)
+            except ValueError as error:
+                known = ", ".join(dict.fromkeys(map(_named, self.joints)))
+                allowed = known if "no members" in str(error) else ""
+                what, key = f"{spec.on} {error}", f"bearing[{number}]"
+                problems.append(Problem(what, file=design.source, key=key, allowed=allowed))
+            seen.add(spec.on)
+        if problems:
+            raise DesignError(problems)
         return found
+
+    def _bearing(self, spec: BearingSpec, *, again: bool) -> dict[Bond, Friction[Any]]:
+        """Return the friction of a single bearing; raise ValueError if it is none."""
+        name = spec.on.removesuffix(".shaft")
+        own = [one for one in self.joints if _named(one) == name]
+        if not own:
+            raise ValueError("has no members that meet there")
+        if again:
+            raise ValueError("has a bearing before")
+        guides = [one for one in own if isinstance(one, SlidingJoint)]
+        hinges = [one for one in own if isinstance(one, Hinge)]
+        sized = spec.radius is not None
+        chosen = hinges if hinges and (sized or not guides) else guides
+        return {one: spec.of(one, self.result.design.friction) for one in chosen}
 
     def at(self, q: Array, share: float = 1.0) -> Reactions:
         """Return the forces at the master's angles, with a share of all coefficients of friction.
@@ -110,7 +137,7 @@ class JointForces:
         InfeasibleError
             If a force acts on what no member carries, or is not finite.
         """
-        friction = {name: one.times(share) for name, one in self.friction.items()}
+        friction = {bond: one.times(share) for bond, one in self.friction.items()}
         try:
             return reactions(
                 self.work.linkage, self.work.efforts, q, speed=self.work.speed, friction=friction
@@ -118,6 +145,9 @@ class JointForces:
         except UnheldError as error:
             what = f"the forces on {error.name} are not known: it is on no member"
             raise InfeasibleError(what, where="load") from error
+        except np.linalg.LinAlgError as error:
+            what = "the forces are not determined: members are in line or parallel somewhere"
+            raise InfeasibleError(what, where="dyad") from error
 
     def sizes(self, found: Reactions) -> dict[str, Array]:
         """Return the sizes of the forces of joints and guides, (n,), N."""
@@ -133,17 +163,44 @@ class JointForces:
 
     def ranges(self, q: Array, mask: Mask) -> str:
         """Return in words where a `mask` holds, (n,), of rising angles `q`, (n,), rad."""
+        if mask.all():
+            return "everywhere"
         rows = np.flatnonzero(mask)
         groups = np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
-        ends = [[self.result.degrees(float(q[k])) for k in (one[0], one[-1])] for one in groups]
+        ends = [[formatted(DEG * float(q[k])) for k in (one[0], one[-1])] for one in groups]
         words = [low if low == high else f"{low} to {high}" for low, high in ends[:3]]
         more = f" and {len(ends) - 3} more" if len(ends) > 3 else ""
         return f"{self.result.driver[0]} = {', '.join(words)} deg{more}"
 
 
+def demand_no_change_points(result: MechanismResult, what: str) -> None:
+    """Refuse a mechanism with change points, where members are in line.
+
+    Parameters
+    ----------
+    result : MechanismResult
+        The mechanism.
+    what : str
+        What is not computed for it, in words.
+
+    Raises
+    ------
+    InfeasibleError
+        If it has some.
+    """
+    for number, one in enumerate(result.linkage.dyads):
+        if one.changes:
+            where = f"{one.joint}, at {result.degrees(one.changes[0])} deg"
+            raise InfeasibleError(
+                f"{what} not determined at a change point of {where}",
+                where=f"dyad[{number}]",
+                nearest="without change points: other lengths",
+            )
+
+
 def _named(bond: Bond) -> str:
     """Return the name of a bond in the design: of a shaft's bearing that of the shaft."""
-    return bond.name.removesuffix(center_of("")).removesuffix(way_of(""))
+    return bond.name.removesuffix(center_of("")).removesuffix(way_of("")).removesuffix(".hinge")
 
 
 def bond_names(structure: Structure) -> dict[Bond, str]:
@@ -154,7 +211,11 @@ def bond_names(structure: Structure) -> dict[Bond, str]:
     }
     kept = [*names.values()]
     return {
-        one: name if kept.count(name) == 1 else f"{name}_{one.on}" for one, name in names.items()
+        # a name that ends as columns of others do has its member behind it, too
+        one: name
+        if kept.count(name) == 1 and not name.endswith(("_x", "_y"))
+        else f"{name}_{one.on}"
+        for one, name in names.items()
     }
 
 
@@ -193,21 +254,24 @@ def study_forces(result: MechanismResult, progress: Progress) -> StudyResult:
         found = joints.at(q)
         _demand_finite(joints, q, found)
         machine = _machine(joints, q, found)
-        findings = run_checks(CHECKS, machine, result.design.limits)
+        limits = result.design.limits
+        effort = DriverEffort(peak=machine.peak[0], place=machine.peak[1], others={})
+        findings = (*run_checks(CHECKS, machine, limits), *run_checks(TORQUE, effort, limits))
     return StudyResult(
         result=result,
         study=result.kind.studies["forces"],
         file="forces.csv",
         table=_columns(joints, q, found),
         group=_facts(joints, q, found, machine),
-        study_findings=findings,
+        study_findings=in_order(findings),
         drawn=partial(_charts, joints, q, found),
     )
 
 
 def _demand_finite(joints: JointForces, q: Array, found: Reactions) -> None:
     """Refuse forces that are not finite where nothing is locked."""
-    wrong = ~np.isfinite(found.values).all(axis=1) & ~found.locked
+    every = np.column_stack([found.values, found.moment, found.work])
+    wrong = ~np.isfinite(every).all(axis=1) & ~found.locked
     if wrong.any():
         where = joints.word(float(q[wrong][0]))
         raise InfeasibleError(f"the forces are not finite at {where}", where="load")
@@ -258,22 +322,31 @@ def _machine(joints: JointForces, q: Array, found: Reactions) -> JointedMachine:
         top = int(np.nanargmax(sizes)) if np.isfinite(sizes).any() else 0
         largest[name] = (float(np.nan_to_num(sizes[top])), joints.word(float(q[top])))
     for bond, name in joints.labels.items():
-        one = joints.friction.get(bond.name)
+        one = joints.friction.get(bond)
         if isinstance(one, GuideFriction):
-            tips = one.tips(found.of(bond))
+            tips = one.tips(found.carried(bond))
             if tips.any():
                 tipping[name] = joints.ranges(q, tips)
+    slack = {
+        name: joints.ranges(q, found.of(bond)[:, 0] < 0.0)
+        for bond, name in joints.labels.items()
+        if isinstance(bond, ChainDrive) and (found.carried(bond)[:, 0] < 0.0).any()
+    }
     locked, pulled = found.locked, dict[str, tuple[float, str]]()
     for name, force in contact_forces(joints.result, joints.work, q):
         off = force < -_NOISE * np.abs(force).max()
         if off.any():
             pulled[name] = (float(-force.min()), joints.ranges(q, off))
+    sizes = np.abs(found.moment)
+    top = int(np.nanargmax(sizes)) if np.isfinite(sizes).any() else 0
     return JointedMachine(
+        peak=(_NM * float(np.nan_to_num(sizes[top])), joints.word(float(q[top]))),
         locked=joints.ranges(q, locked) if locked.any() else "",
         free=_free_share(joints, q[locked]) if locked.any() else 1.0,
         tipping=tipping,
         largest=largest,
         pulled=pulled,
+        slack=slack,
     )
 
 
@@ -294,14 +367,15 @@ def _columns(joints: JointForces, q: Array, found: Reactions) -> dict[str, Any]:
     """Return the columns of ``forces.csv``."""
     columns: dict[str, Any] = {
         f"{joints.result.driver[0]}_deg": DEG * q,
-        "torque_nm": np.ma.masked_invalid(_NM * found.moment),
+        "driver_torque_nm": np.ma.masked_invalid(_NM * found.moment),
     }
     if joints.friction:
-        columns["torque_without_friction_nm"] = _NM * found.work
+        columns["driver_torque_without_friction_nm"] = _NM * found.work
         columns["lost_nm"] = np.ma.masked_invalid(_NM * (found.moment - found.work))
         columns["efficiency"] = np.ma.masked_invalid(_efficiency(found))
     if joints.result.speed is not None:
-        columns["power_w"] = columns["torque_nm"] * joints.result.speed
+        columns["power_w"] = columns["driver_torque_nm"] * joints.result.speed
+    columns |= _on_wheels(joints, found)
     for name, force in contact_forces(joints.result, joints.work, q):
         columns[f"{name}_contact_n"] = force
     for bond, name in joints.labels.items():
@@ -318,6 +392,23 @@ def _columns(joints: JointForces, q: Array, found: Reactions) -> dict[str, Any]:
     return {name: np.ma.masked_invalid(values) for name, values in columns.items()}
 
 
+def _on_wheels(joints: JointForces, found: Reactions) -> dict[str, Array]:
+    """Return the moments on wheel 2 of a pair and on its driver, as the study of torque has them.
+
+    With friction, of what its cranks carry; only of one pair that is the master.
+    """
+    drive = joints.result.drives[0]
+    shaft, many = f"{drive.spec.name}.wheel2", len(joints.result.drives) > 1
+    own = [one for one in joints.structure.bonds if getattr(one, "shaft", "") == shaft]
+    if "wheel2" not in drive.moved or many or not own:
+        return {}
+    rate = found.known.rate(shaft)
+    side = float(np.sign(rate.mean()))
+    moment = side * np.sum([found.of(one)[:, 0] for one in own], axis=0)
+    turned = np.abs(rate / found.known.rate(f"{drive.spec.name}.wheel1"))
+    return {"wheel1_torque_nm": _NM * moment * turned, "wheel2_torque_nm": _NM * moment}
+
+
 def _efficiency(found: Reactions) -> Array:
     """Return the efficiency at each place: nan where the moment changes its sense, or is locked."""
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -330,8 +421,8 @@ def _facts(joints: JointForces, q: Array, found: Reactions, machine: JointedMach
     """Return the facts of the study."""
     tree: Tree = {"torque_nm": _moment(joints, q, found)}
     if joints.friction and not found.locked.any():
-        useful, driven = _works(joints)
-        if useful > 0.0:
+        useful, driven, size = _works(joints)
+        if useful > _NOISE * size:
             value = useful / driven
             tree["efficiency"] = Fact(value, "efficiency over the range", unit="", shown=True)
     tree["joints"] = {
@@ -352,12 +443,14 @@ def _facts(joints: JointForces, q: Array, found: Reactions, machine: JointedMach
     return tree | {"assumptions": Fact(_assumed(joints), "assumed", shown=True)}
 
 
-def _works(joints: JointForces) -> tuple[float, float]:
-    """Return the driver's work over the range without friction, and with it, N mm."""
+def _works(joints: JointForces) -> tuple[float, float, float]:
+    """Return the driver's work over the range without friction, with it, and by size, N mm."""
     cells = joints.work.cells
     places, weights = (one.ravel() for one in gauss_cells(cells[:-1], cells[1:]))
     found = joints.at(places)
-    return float(weights @ found.work), float(weights @ found.moment)
+    sums = (weights @ one for one in (found.work, found.moment, np.abs(found.work)))
+    useful, driven, size = map(float, sums)
+    return useful, driven, size
 
 
 def _on(joints: JointForces, name: str) -> str:
@@ -374,6 +467,8 @@ def _contact(joints: JointForces, name: str, q: Array, force: Array) -> Fact:
 
 def _moment(joints: JointForces, q: Array, found: Reactions) -> Fact:
     values = _NM * found.moment
+    if np.isnan(values).all():
+        return Fact("none", "moment of the driver: friction locks it everywhere", shown=True)
     least, largest = int(np.nanargmin(values)), int(np.nanargmax(values))
     low, high = float(values[least]), float(values[largest])
     noise = _NOISE * max(abs(low), abs(high))
@@ -384,11 +479,21 @@ def _moment(joints: JointForces, q: Array, found: Reactions) -> Fact:
 
 def _assumed(joints: JointForces) -> str:
     """Return what is left out, in words."""
-    words = [] if joints.friction else ["no friction"]
+    plain = [joints.labels[one] for one in joints.joints if one not in joints.friction]
+    words = ["no friction"] if len(plain) == len(joints.joints) else []
+    if plain and not words:
+        words = [f"no friction in {', '.join(plain)}"]
+    parts = {one.part for one in joints.work.efforts}
     if joints.result.speed is None:
         words.append("at rest, without inertia")
+    if INERTIA not in parts:
+        words.append("no masses")
+    if GRAVITY not in parts:
+        words.append("no gravity")
     if any(drive.spec.pair is not None for drive in joints.result.drives):
         words.append("bearings of wheels without the force of their teeth")
+    if any(drive.spec.cam is not None for drive in joints.result.drives):
+        words.append("guides and pivots of followers without the side force of their cams")
     return ", ".join(words) or "the driver turns evenly"
 
 

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.base.errors import DesignError, Problem
+from gearcam.base.errors import DesignError, InfeasibleError, Problem
 from gearcam.base.facts import Fact, Tree
 from gearcam.base.findings import run_checks
 from gearcam.designs.slips import did_you_mean
 from gearcam.kinds.mechanism.asked import DEG
-from gearcam.kinds.mechanism.forces import joint_names
+from gearcam.kinds.mechanism.forces import demand_no_change_points, joint_names
 from gearcam.kinds.mechanism.keys import center_of
 from gearcam.kinds.mechanism.tolerances import CHECKS, Deviations
 from gearcam.linkages.coordinates import GROUND, MemberTurn, NamedCoordinate, PointWay
@@ -73,39 +73,52 @@ class Tolerated:
     """
 
     def __init__(self, result: MechanismResult) -> None:
+        demand_no_change_points(result, "deviations are")
         self.result, self.spec = result, result.design.precision
         self.linkage = result.linkage
         self.outputs = {one.stem: one for one in result.outputs}
         dimensions = {_name(one): one for one in dimensions_of(self.linkage)}
-        dimensions.pop("", None)
         self.dimensions: dict[str, Dimension] = dimensions
         self.loose = {f"{name}.clearance": one for one, name in joint_names(self.linkage).items()}
         self.tolerances = dict.fromkeys(self.loose, self.spec.clearance) | {
             name: self.spec.angle_tolerance if one.angle else self.spec.length_tolerance
             for name, one in dimensions.items()
         }
+        problems, seen = list[Problem](), set[str]()
         for number, spec in enumerate(result.design.tolerance):
-            self.tolerances[spec.of] = self._of(number, spec)
+            found = self._problem(number, spec, again=spec.of in seen)
+            seen.add(spec.of)
+            if found is None:
+                self.tolerances[spec.of] = float(spec.length or spec.angle or 0.0)
+            else:
+                problems.append(found)
+        if self.spec.trials and not problems and not self.given:
+            what, near = "has no tolerances to try", "length_tolerance_mm, or a table [[tolerance]]"
+            key = "precision.trials"
+            problems.append(Problem(what, file=result.design.source, key=key, allowed=near))
+        if problems:
+            raise DesignError(problems)
 
     def angle(self, name: str) -> bool:
         """Return whether a dimension is an angle."""
         return name in self.dimensions and self.dimensions[name].angle
 
-    def _of(self, number: int, spec: ToleranceSpec) -> float:
-        """Return the tolerance of a table; refuse one of no dimension, or of another unit."""
-        source, key = self.result.design.source, f"tolerance[{number}]"
+    def _problem(self, number: int, spec: ToleranceSpec, *, again: bool) -> Problem | None:
+        """Return what is wrong with a tolerance: of no dimension, twice, or of another unit."""
+        source, key = self.result.design.source, f"tolerance[{number}].of"
         if spec.of not in self.tolerances:
             what, near = f"{spec.of} is no dimension", ", ".join(self.tolerances)
             hint = did_you_mean(spec.of, list(self.tolerances))
-            problem = Problem(what, file=source, key=f"{key}.of", allowed=near, hint=hint)
-            raise DesignError([problem])
+            return Problem(what, file=source, key=key, allowed=near, hint=hint)
+        if again:
+            what = f"{spec.of} has a tolerance before"
+            return Problem(what, file=source, key=key, allowed="one for each dimension")
         angle = self.angle(spec.of)
-        value = spec.angle if angle else spec.length
-        if value is None:
+        if (spec.angle if angle else spec.length) is None:
             what = f"{spec.of} is {'an angle' if angle else 'a length'}"
             near = "tolerance_deg" if angle else "tolerance_mm"
-            raise DesignError([Problem(what, file=source, key=key, allowed=near)])
-        return value
+            return Problem(what, file=source, key=key, allowed=near)
+        return None
 
     @cached_property
     def given(self) -> bool:
@@ -138,19 +151,15 @@ class Tolerated:
 
 
 def _name(dimension: Dimension) -> str:
-    """Return the name of a dimension in the design: of a shaft's place that of the shaft.
-
-    Empty if it is none of the design: a drive's own frame.
-    """
+    """Return the name of a dimension in the design: of a shaft's place that of the shaft."""
     base, _, rest = dimension.name.rpartition(".")
-    own = base.removesuffix(center_of(""))
-    return "" if own.endswith(".shaft") else f"{own}.{rest}"
+    return f"{base.removesuffix(center_of(''))}.{rest}"
 
 
 def _coordinate(one: Output) -> WorkCoordinate:
     """Return the coordinate of an output, on which a force acts."""
     owner, _, what = one.quantity.rpartition(".")
-    if what == "angle":
+    if what in ("angle", "turn"):
         return MemberTurn(owner)
     if what in ("x", "y"):
         return PointWay(owner, GROUND, 1.0 + 0j if what == "x" else 1j)
@@ -176,6 +185,8 @@ def study_precision(result: MechanismResult, progress: Progress) -> StudyResult:
     ------
     DesignError
         If a tolerance is of no dimension.
+    InfeasibleError
+        If it has change points, or just closes somewhere.
     """
     with result.stage("precision"):
         progress("precision", 0, 1)
@@ -185,6 +196,10 @@ def study_precision(result: MechanismResult, progress: Progress) -> StudyResult:
         even[-1] = np.nextafter(high, low)
         q = with_both_sides(even, machine.linkage.knots)
         found = machine.at(q)
+        for stem, by in found.items():
+            if not np.isfinite([*by.values()]).all():
+                what = f"deviations of {stem} have no limit where it just closes"
+                raise InfeasibleError(what, where="dyad", nearest="a smaller range_deg")
         peaks = _peaks(machine, q, found)
         trials = _trials(machine, even, progress)
     worst = {
@@ -299,7 +314,12 @@ def _facts(machine: Tolerated, peaks: Peaks, q: Array, found: Errors, trials: Ar
             own |= _trial_facts(stem, scale * trials[:, number], unit)
         tree["outputs"][stem] = own
     if trials is not None:
-        tree["trials"] = {"count": len(trials), "open": int(np.isnan(trials).any(axis=1).sum())}
+        count = int(np.isnan(trials).any(axis=1).sum())
+        label = "random machines that do not close, of which nothing is told"
+        tree["trials"] = {
+            "count": len(trials),
+            "open": Fact(count, label, unit="", shown=count > 0),
+        }
     return tree
 
 
@@ -311,9 +331,12 @@ def _dimension_facts(machine: Tolerated, stem: str, q: Array, found: Errors) -> 
     def weight(name: str) -> float:
         return largest[name] * (machine.tolerances[name] if machine.given else 1.0)
 
-    for rank, name in enumerate(sorted(largest, key=weight, reverse=True)):
+    ranks = {True: 0, False: 0}  # of angles and of lengths, where they cannot be compared
+    for name in sorted(largest, key=weight, reverse=True):
         if largest[name] <= _NOTHING:
             continue
+        sort = machine.angle(name) and not machine.given
+        rank, ranks[sort] = ranks[sort], ranks[sort] + 1
         factor, per = (1.0 / DEG, "deg") if machine.angle(name) else (1.0, "mm")
         place = float(q[np.abs(found[stem][name]).argmax()])
         value = scale * factor * largest[name]

@@ -114,12 +114,15 @@ class ShaftLoad(NamedTuple):
         In words.
     loose : str
         Name of the drive if it is a cam with one wall, off which its follower can be lifted.
+    drive : str
+        Name of the drive.
     """
 
     column: str
     values: Array
     meaning: str
     loose: str = ""
+    drive: str = ""
 
     def of(self, drive: str) -> ShaftLoad:
         """Return the same with the name of its drive: one of several."""
@@ -319,7 +322,8 @@ def shaft_loads(result: MechanismResult, work: VirtualWork, q: Array) -> Iterato
     drives = [one for one in result.drives if one.spec.pair is not None or one.spec.cam is not None]
     for drive in drives:
         one = _of_pair if drive.spec.pair else _of_cam
-        for load in one(drive, work, q):
+        for found in one(drive, work, q):
+            load = found._replace(drive=drive.spec.name)
             yield load if len(drives) == 1 else load.of(drive.spec.name)
 
 

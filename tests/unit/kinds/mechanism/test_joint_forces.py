@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import gearcam as gc
-from gearcam.base.errors import DesignError
+from gearcam.base.errors import DesignError, InfeasibleError
+from gearcam.kinds.mechanism.forces import JointForces
 from gearcam.linkages.reactions import Structure
 from helpers_machines import MACHINES
 
@@ -32,11 +33,11 @@ def test_rows_have_forces_and_the_driver_with_and_without_friction() -> None:
     for name in (one.removesuffix("_x_n") for one in table if one.endswith("_x_n")):
         size = np.hypot(table[f"{name}_x_n"], table[f"{name}_y_n"])
         assert table[f"{name}_n"] == pytest.approx(size)
-    lost = table["torque_nm"] - table["torque_without_friction_nm"]
+    lost = table["driver_torque_nm"] - table["driver_torque_without_friction_nm"]
     assert table["lost_nm"] == pytest.approx(lost, abs=1e-12)
     assert (lost > 0.0).all()
-    driven = table["torque_without_friction_nm"] > 0.0
-    both = table["torque_without_friction_nm"] / table["torque_nm"]
+    driven = table["driver_torque_without_friction_nm"] > 0.0
+    both = table["driver_torque_without_friction_nm"] / table["driver_torque_nm"]
     assert table["efficiency"][driven] == pytest.approx(both[driven])
 
 
@@ -45,7 +46,7 @@ def test_facts_are_the_extremes_of_all_angles() -> None:
     for name in facts["forces.joints"]:
         most = np.nanmax(dense.columns[f"{name}_n"])
         assert facts[f"forces.joints.{name}.largest_n"] == pytest.approx(most, rel=1e-9)
-    assert facts["forces.torque_nm.max"] == pytest.approx(np.max(dense.columns["torque_nm"]))
+    assert facts["forces.torque_nm.max"] == pytest.approx(np.max(dense.columns["driver_torque_nm"]))
     assert facts["forces.error"] < 1e-10
     assert not facts["forces.locked"]
 
@@ -59,14 +60,15 @@ def test_the_work_without_friction_over_that_with_it_is_the_efficiency() -> None
     made = gc.build(machine).study("forces")
     q = np.radians(made.columns["theta_deg"])
     works = [
-        np.trapezoid(made.columns[name], q) for name in ("torque_without_friction_nm", "torque_nm")
+        np.trapezoid(made.columns[name], q)
+        for name in ("driver_torque_without_friction_nm", "driver_torque_nm")
     ]
     assert made.facts["forces.efficiency"] == pytest.approx(works[0] / works[1], rel=1e-5)
 
 
 def test_without_friction_nothing_is_said_of_it() -> None:
     made = built().study("forces")
-    assert "torque_without_friction_nm" not in made.columns
+    assert "driver_torque_without_friction_nm" not in made.columns
     assert "forces.efficiency" not in made.facts
     assert "no friction" in made.facts["forces.assumptions"]
     torque = built().study("torque")
@@ -101,11 +103,11 @@ def test_a_limit_of_forces_and_slides_that_tip_are_told() -> None:
     assert all(one.value is not None and one.value > 1000.0 for one in forces)
 
 
-def steep(guide: float) -> Any:
+def steep(guide: float, **drive: Any) -> Any:
     """A slider-crank whose rod stands steep on the guide."""
     return gc.build(gc.design({
         "kind": "mechanism", "name": "steep",
-        "drive": [{"name": "motor", "even": True}],
+        "drive": [{"name": "motor", "even": True, **drive}],
         "guide": [{"name": "bed", "at_mm": [0, 20]}],
         "crank": [{"name": "crank", "on": "motor", "joint": "B", "length_mm": 100}],
         "dyad": [{"type": "RRT", "from": "B", "to": "bed", "joint": "C",
@@ -120,7 +122,7 @@ def test_where_it_is_locked_there_are_no_forces() -> None:
     (one,) = (one for one in made.study_findings if one.code == "self-locking")
     assert one.severity == "error"
     assert made.facts["forces.locked"]
-    assert np.isnan(made.columns["torque_nm"]).any()
+    assert np.isnan(made.columns["driver_torque_nm"]).any()
     assert "forces.efficiency" not in made.facts
     share = float(one.message.split(" times")[0].split()[-1])
     assert not steep(0.4 * share).facts["forces.locked"]
@@ -130,7 +132,13 @@ def test_where_it_is_locked_there_are_no_forces() -> None:
 REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     "nothing acts": ({"load": []}, "nothing acts on the mechanism"),
     "a bearing at a point": (
-        {"bearing": [{"on": "P", "coefficient": 0.1, "radius_mm": 5}]}, "no members meet there",
+        {"bearing": [{"on": "P", "coefficient": 0.1, "radius_mm": 5}]}, "no members that meet",
+    ),
+    "no radius of a hinge": (
+        {"bearing": [{"on": "C", "coefficient": 0.1}]}, "its radius_mm is missing",
+    ),
+    "twice": (
+        {"bearing": [{"on": "C", "coefficient": 0.1, "radius_mm": 5}] * 2}, "has a bearing before",
     ),
     "a length of a hinge": (
         {"bearing": [{"on": "C", "coefficient": 0.1, "length_mm": 5}]}, "C is a hinge",
@@ -187,3 +195,108 @@ def test_the_contact_force_of_a_cam_is_that_of_its_pressure_angle() -> None:
 def test_friction_that_nothing_uses_is_told(studies: list[str], told: int) -> None:
     found = built(friction=RUBBING, output={"studies": studies}).checked
     assert [one.code for one in found].count("loads-unused") == told
+
+
+def test_a_bearing_takes_what_it_lacks_from_the_others() -> None:
+    own = [{"on": "C", "radius_mm": 12}, {"on": "D", "coefficient": 0.3}]
+    made = JointForces(built(friction=RUBBING, bearing=own))
+    found: dict[str, Any] = {bond.name: one for bond, one in made.friction.items()}
+    assert (found["C"].coefficient, found["C"].radius) == (0.1, 12.0)
+    assert (found["D"].coefficient, found["D"].radius) == (0.3, 6.0)
+
+
+def test_where_all_is_locked_it_is_said_once() -> None:
+    made = steep(1.0, range_deg=[262, 278])
+    (one,) = (one for one in made.study_findings if one.code == "self-locking")
+    assert one.where == "everywhere"
+    assert made.facts["forces.torque_nm"] == "none"
+
+
+def test_what_tips_everywhere_is_said_so() -> None:
+    machine = gc.load("profiles/quick_return.toml").with_({
+        "load": [{"on": "ram", "force_n": 1500}],
+        "friction": {"guide": 0.1, "guide_length_mm": 5},
+        "mass": [{"of": "slider", "mass_kg": 20, "at_mm": [90, 0]}],
+        "gravity": {"direction_deg": -90},
+    })  # fmt: skip
+    found = gc.build(machine).study("forces").study_findings
+    assert [one.where for one in found if one.code == "edge-contact"] == ["bed, everywhere"]
+
+
+def test_guides_that_carry_nothing_have_no_friction_and_do_not_tip() -> None:
+    """A slide that a drive pushes is loaded along its way."""
+    push = gc.build(gc.design({
+        "kind": "mechanism", "name": "push",
+        "drive": [{"name": "motor", "even": True}, {"name": "ram", "slide": "20*sin(q)"}],
+        "slide": [{"name": "tool", "on": "ram", "joint": "T"}],
+        "crank": [{"name": "crank", "on": "motor", "joint": "B", "length_mm": 40}],
+        "load": [{"on": "tool", "force_n": 100}],
+        "friction": {"guide": 0.2, "guide_length_mm": 40},
+    })).study("forces")  # fmt: skip
+    assert not push.study_findings
+    assert np.abs(push.columns["lost_nm"]).max() == 0.0
+
+
+def test_a_crank_on_a_member_is_held_by_the_frame() -> None:
+    """Its angle is that in the machine: the moment by reactions is that by virtual work."""
+    arms = gc.build(gc.design({
+        "kind": "mechanism", "name": "arms",
+        "drive": [{"name": "m", "even": True}, {"name": "n", "even": True, "ratio": 2}],
+        "crank": [{"name": "carrier", "on": "m", "joint": "B", "length_mm": 40},
+                  {"name": "arm", "on": "n", "at": "B", "joint": "P", "length_mm": 20}],
+        "load": [{"on": "P", "force_n": [10, 0]}],
+    })).study("forces")  # fmt: skip
+    assert arms.facts["forces.error"] < 1e-12
+    q = np.radians(arms.columns["theta_deg"])
+    known = 1e-3 * 10.0 * (40.0 * np.sin(q) + 2.0 * 20.0 * np.sin(2.0 * q))
+    assert arms.columns["driver_torque_nm"] == pytest.approx(known, abs=1e-9)
+
+
+def test_a_load_on_a_yoke_presses_its_pin() -> None:
+    """It is on what slides in the guide, not on the block."""
+    yoke = gc.build(gc.design({
+        "kind": "mechanism", "name": "yoke",
+        "drive": [{"name": "motor", "even": True}],
+        "guide": [{"name": "way"}],
+        "crank": [{"name": "crank", "on": "motor", "joint": "B", "length_mm": 40}],
+        "dyad": [{"type": "RTT", "from": "B", "to": "way", "joint": "S",
+                  "members": ["block", "yoke"], "gammas_deg": [0, 90], "beta_deg": 90}],
+        "load": [{"on": "S", "force_n": -100}],
+    })).study("forces")  # fmt: skip
+    assert yoke.facts["forces.joints.S.largest_n"] == pytest.approx(100.0)
+    assert yoke.facts["forces.error"] < 1e-12
+
+
+def test_change_points_are_refused() -> None:
+    folding = {"joint": [{"name": "D", "at_mm": [100, 0]}], "change": "motion"}
+    dyad = [{"type": "RRR", "from": "B", "to": "D", "joint": "C", "members": ["coupler", "rocker"],
+             "lengths_mm": [100, 40], "change": "motion", "near_mm": [140, 0]}]  # fmt: skip
+    crank = [{"name": "crank", "on": "motor", "joint": "B", "length_mm": 40}]
+    tables = {"drive": [{"name": "motor", "even": True}], "joint": folding["joint"], "dyad": dyad,
+              "crank": crank, "load": [{"on": "rocker", "torque_nm": -5}]}  # fmt: skip
+    made = gc.build(gc.design({"kind": "mechanism", "name": "para", **tables}))
+    for name in ("forces", "precision"):
+        with pytest.raises(InfeasibleError, match="not determined at a change point of C, at 0"):
+            made.study(name)
+
+
+def test_a_drive_with_too_little_torque_is_told_with_friction() -> None:
+    limits = {"drive_torque_nm": 1e-3}
+    made = built(friction=RUBBING, limits=limits).study("forces")
+    (one,) = (one for one in made.study_findings if one.code == "drive-torque")
+    assert one.value == pytest.approx(np.abs(made.columns["driver_torque_nm"]).max())
+
+
+def test_a_pair_takes_the_moment_of_its_machine_with_friction(tmp_path: Any) -> None:
+    machine = gc.load("profiles/nail_machine_slide.toml").with_({
+        "friction": {"guide": 0.1, "joint": 0.05, "journal_radius_mm": 30},
+    })  # fmt: skip
+    made = gc.build(machine).study("forces")
+    (tmp_path / "forces.csv").write_bytes(made.files["forces.csv"])
+    pair = gc.load("profiles/nail_machine_two_phase.toml").with_(
+        {"load": [{"on": "wheel2", "file": str(tmp_path / "forces.csv")}]}
+    )
+    loaded = gc.build(pair).study("forces")
+    own = np.max(made.columns["wheel2_torque_nm"])
+    assert loaded.facts["forces.load_nm.max"] == pytest.approx(own, rel=1e-3)
+    assert own > np.max(gc.build(machine).study("torque").columns["wheel2_torque_nm"])

@@ -183,8 +183,8 @@ def loads_unused(result: Any, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     given = [title for title, one in several.items() if one and isinstance(one[0], MachineAction)]
     if given and not {"torque", "forces", "balance"} & {*result.design.output.studies}:
         yield Remark(
-            "Only the studies of torque and forces use loads, masses and springs: "
-            'gearcam torque FILE, gearcam forces FILE, or studies = ["torque", "forces"].',
+            "Only the studies torque, forces and balance use loads, masses and springs: "
+            'gearcam torque FILE, or studies = ["torque"] in [output].',
             ", ".join(given),
         )
     rubs = result.design.bearing or result.design.friction != type(result.design.friction)()

@@ -65,13 +65,21 @@ class BearingSpec(WithNames):
     """
 
     on: str = named(
-        needs=f"{Sort.JOINT} or {Sort.GUIDE} or {Sort.SHAFT} or {Sort.WAY}",
+        needs=f"{Sort.JOINT} or {Sort.GUIDE} or {Sort.SHAFT} or {Sort.WAY} or {Sort.MEMBER}",
         example="B",
-        doc="a joint, a guide, or the shaft or slide of a drive",
+        doc="a joint, a guide, the shaft or slide of a drive, or a member: the lever of a chain, "
+        "what a hoist lifts, a Geneva wheel",
     )
-    coefficient: float = param(ge=0, le=2, example=0.1, doc="of friction")
+    coefficient: float | None = param(
+        default=None, ge=0, le=2, example=0.1, doc="of friction; that in [friction] if left out"
+    )
     radius: float | None = param(
-        LENGTH, default=None, gt=0, le=LONGEST, example=8, doc="radius of the journal of a hinge"
+        LENGTH,
+        default=None,
+        gt=0,
+        le=LONGEST,
+        example=8,
+        doc="radius of the journal of a hinge; as in [friction] if left out",
     )
     length: float | None = param(
         LENGTH,
@@ -87,12 +95,33 @@ class BearingSpec(WithNames):
         if self.radius is not None and self.length is not None:
             yield "length", None, "is given beside radius_mm", "radius_mm of a hinge, or length_mm"
 
-    def of(self, bond: Bond) -> Friction[Any] | None:
-        """Return the friction of a hinge or guide; None if it has the sizes of the other."""
-        if isinstance(bond, Hinge):
-            if self.radius is None:
-                return None
-            return JournalFriction(coefficient=self.coefficient, radius=self.radius)
-        length = math.inf if self.length is None else self.length
-        own = GuideFriction(coefficient=self.coefficient, length=length)
-        return None if self.radius else own
+    def of(self, bond: Bond, general: MachineFrictionSpec) -> Friction[Any]:
+        """Return its friction.
+
+        Parameters
+        ----------
+        bond : Bond
+            A hinge or guide.
+        general : MachineFrictionSpec
+            What holds where nothing is given.
+
+        Raises
+        ------
+        ValueError
+            If something is missing, or is that of the other sort.
+        """
+        hinged = isinstance(bond, Hinge)
+        usual = general.joint if hinged else general.guide
+        coefficient = self.coefficient if self.coefficient is not None else usual
+        if hinged:
+            radius = self.radius or general.journal_radius
+            if self.length is not None:
+                raise ValueError("is a hinge, which has a radius_mm and no length_mm")
+            if radius is None:
+                raise ValueError("is a hinge, and its radius_mm is missing")
+            return JournalFriction(coefficient=coefficient, radius=radius)
+        if self.radius is not None:
+            raise ValueError("is a guide, which has a length_mm and no radius_mm")
+        return GuideFriction(
+            coefficient=coefficient, length=self.length or general.guide_length or math.inf
+        )

@@ -310,6 +310,6 @@ def _opposing(law: ForceLaw) -> ForceLaw:
 
     def opposed(acting: Acting) -> Jet:
         size = acting.angle * 0.0 + law(acting)
-        return size * -(np.sign(acting.rate.c[0]) * np.sign(size.c[0]))
+        return size * -(acting.sense * np.sign(size.c[0]))
 
     return opposed
