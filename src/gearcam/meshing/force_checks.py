@@ -148,8 +148,8 @@ def contact_pressure(loaded: Pressed, limit: float) -> Iterator[Remark]:
     found = float(loaded.pressure[worst])
     if found > most:
         yield Remark(
-            f"The contact pressure{loaded.shares} is too high: wider or larger wheels, or a smaller "
-            "load lower it.",
+            f"The contact pressure{loaded.shares} is too high: wider or larger wheels, or a "
+            "smaller load lower it.",
             loaded.place_of(worst),
             found,
             limit=most,
