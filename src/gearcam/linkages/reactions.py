@@ -91,10 +91,32 @@ class Structure(ShortRepr):
         """Guides by the quantities that are places on them."""
         return {one.slide: one for one in self.bonds if isinstance(one, SlidingJoint)}
 
-    @property
-    def unknowns(self) -> tuple[str, ...]:
-        """Names of the unknowns, in order."""
-        return tuple(name for one in self.bonds for name in one.unknowns)
+    @cached_property
+    def _forces(self) -> Mask:
+        """Which unknowns are forces."""
+        return np.array([name in _FORCES for one in self.bonds for name in one.unknowns])
+
+    def carried(self, bond: Bond, values: Array, size: float) -> Array:
+        """Return the unknowns of a bond without rounding, whose sign would be chance.
+
+        Parameters
+        ----------
+        bond : Bond
+            One of the bonds.
+        values : (n, u) array, N and N mm
+            All unknowns.
+        size : float, mm
+            Of the linkage, with which moments are compared.
+
+        Returns
+        -------
+        (n, k) array
+            0 where it is less than rounding of the largest force.
+        """
+        own = values[:, self.columns[bond]]
+        least = _ROUNDING * np.abs(values[:, self._forces]).max(axis=1, initial=0.0)
+        sizes = [1.0 if one in _FORCES else size for one in bond.unknowns]
+        return np.where(np.abs(own) > least[:, None] * sizes, own, 0.0)
 
     @cached_property
     def columns(self) -> dict[Bond, slice]:
@@ -115,6 +137,8 @@ class Reactions(ShortRepr):
         The motion.
     values : (n, u) array, N and N mm
         The unknowns of all bonds; nan where friction locks.
+    size : float, mm
+        Of the linkage.
     moment : (n,) array, N mm
         The driver's moment, from what its drives exert.
     work : (n,) array, N mm
@@ -129,6 +153,7 @@ class Reactions(ShortRepr):
     structure: Structure
     known: Known
     values: Array
+    size: float
     moment: Array
     work: Array
     lost: Array
@@ -140,7 +165,7 @@ class Reactions(ShortRepr):
 
     def carried(self, bond: Bond) -> Array:
         """Return them without rounding."""
-        return _Equilibrium(self.structure, self.known).carried(bond, self.values)
+        return self.structure.carried(bond, self.values, self.size)
 
     def force(self, bond: Bond) -> Plane:
         """Return the force of a bond on its member, (n,), N, in the machine's frame."""
@@ -225,6 +250,7 @@ def reactions(
         structure=structure,
         known=state.known,
         values=values,
+        size=equilibrium.size,
         moment=(values * works).sum(axis=1) - moment,
         work=sum(balances, start=np.zeros(state.q.shape)),
         lost=lost,
@@ -263,14 +289,6 @@ class _Equilibrium:
     def _add(self, rows: Array, bond: Bond, wrench: Wrench) -> None:
         self._put(rows, bond.on, wrench)
         self._put(rows, bond.by, wrench.times(np.array(-1.0)))
-
-    def carried(self, bond: Bond, values: Array) -> Array:
-        """Return the unknowns of a bond, (n, k), without rounding, whose sign would be chance."""
-        own = values[:, self.structure.columns[bond]]
-        forces = values[:, [k for k, one in enumerate(self.structure.unknowns) if one in _FORCES]]
-        least = _ROUNDING * np.abs(forces).max(axis=1, initial=0.0)
-        sizes = [1.0 if one in _FORCES else self.size for one in bond.unknowns]
-        return np.where(np.abs(own) > least[:, None] * sizes, own, 0.0)
 
     def loads(
         self, efforts: Sequence[Effort], state: WorkState, held: HeldMembers
@@ -316,7 +334,7 @@ class _Equilibrium:
             tangent, rest, lost = self.matrix.copy(), loads.copy(), np.zeros(len(loads))
             for bond, one in pairs:
                 own = self.structure.columns[bond]
-                found = one.of(bond, self.known, self.carried(bond, values))
+                found = one.of(bond, self.known, self.structure.carried(bond, values, self.size))
                 column = np.zeros(loads.shape)
                 self._add(column, bond, found.unit)
                 rest += column * found.size[:, None]
