@@ -16,6 +16,7 @@ from random_designs.goals import seek
 from random_designs.law_draw import Counts, LawDraw
 from random_designs.laws import random_law
 from random_designs.output import asked, drive, studies
+from random_designs.pair_loads import loaded
 
 _SHARES: Final = {
     "svg": 0.7, "dxf": 0.1, "inspection": 0.15, "cut-svg": 0.06, "drawing-svg": 0.08,
@@ -186,4 +187,5 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     _studies(d, made, module)
     drive(d, made)
     seek(made, index, "pair.center_distance_mm", "mesh.acceleration_max")
+    loaded(d, made, module, None if closed and not opened else 10.0)
     return made

@@ -33,6 +33,56 @@ def loaded(m: Machine, made: dict[str, Any]) -> None:
         made["torque"] = {"steps": d.whole(12, 100)}
     if d.chance(0.7):
         made["output"]["studies"] = ["torque"]
+    _rubbed(m, made)
+    _studied(m, made)
+
+
+def _changes(m: Machine) -> bool:
+    """Whether a dyad may pass a place where its forces and deviations are not determined."""
+    return any("change" in row for row in m.tables.get("dyad", ()))
+
+
+def _rubbed(m: Machine, made: dict[str, Any]) -> None:
+    """Give friction to some, and ask for the forces in joints."""
+    d = m.d
+    if d.chance(0.5) and not _changes(m):
+        made["forces"] = {"steps": d.whole(12, 60)}
+        made["output"]["studies"] = [*made["output"].get("studies", ()), "forces"]
+    if d.chance(0.5):
+        made["friction"] = {
+            "joint": d.even(0.01, 0.2),
+            "journal_radius_mm": short(d.log(1, 15)),
+            "guide": d.even(0.01, 0.2),
+            "guide_length_mm": short(d.log(10, 200)),
+        }
+        cranks = [row["joint"] for row in m.tables.get("crank", ())]
+        if cranks and d.chance(0.2):
+            m.add("bearing", on=d.pick(cranks), coefficient=d.even(0, 0.3), radius_mm=5.0)
+
+
+def _studied(m: Machine, made: dict[str, Any]) -> None:
+    """Give tolerances and counterweights to some."""
+    d, cranks = m.d, m.tables.get("crank", ())
+    if d.chance(0.3) and not _changes(m):
+        made["precision"] = {
+            "length_tolerance_mm": short(d.log(1e-3, 0.2)),
+            "angle_tolerance_deg": short(d.log(1e-3, 0.2)),
+            "clearance_mm": short(d.log(1e-3, 0.1)),
+            "trials": d.whole(0, 5),
+            "seed": d.whole(0, 9),
+            "steps": d.whole(12, 60),
+        }
+        if cranks and d.chance(0.3):
+            m.add("tolerance", of=f"{d.pick([*cranks])['name']}.length", tolerance_mm=0.01)
+        made["output"]["studies"] = [*made["output"].get("studies", ()), "precision"]
+    if d.chance(0.3) and any("mass_kg" in row for row in m.tables.get("mass", ())):
+        made["balance"] = {"harmonics": d.whole(1, 8), "steps": d.whole(12, 60)}
+        fixed = [row["name"] for row in cranks if "at" not in row]
+        if fixed and d.chance(0.6):
+            made["balance"] |= {"counterweights": [d.pick(fixed)], "radius_mm": 40.0}
+            if d.chance(0.5):
+                made["balance"]["direction_deg"] = d.even(-90, 90)
+        made["output"]["studies"] = [*made["output"].get("studies", ()), "balance"]
 
 
 def _masses_and_springs(m: Machine) -> None:

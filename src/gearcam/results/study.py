@@ -125,7 +125,8 @@ class StudyResult(NotebookView):
     def __getstate__(self) -> dict[str, Any]:
         # what charts are drawn from need not be picklable
         curves = tuple(self.coloured())
-        kept = {"charts": self.charts, "drawn": dict, "coloured": partial(tuple, curves)}
+        coloured = partial(tuple, curves) if curves else tuple
+        kept = {"charts": self.charts, "drawn": dict, "coloured": coloured}
         return pickled({**vars(self), **kept})
 
     @cached_property

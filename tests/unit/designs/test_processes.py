@@ -80,7 +80,8 @@ def test_optional_keys_show_their_default_or_say_that_they_show_an_example(
     text, known = template(kind, "mine", process), KINDS[kind]
     shown = {key for key, _ in re.findall(r"^# (\w+) = (.*?) +# \(example\)", text, re.MULTILINE)}
     for title in (*known.tables, "limits"):
-        part = text.partition(f"[{title}]")[2].partition("\n\n")[0]
+        _, *parts = re.split(rf"(?m)^(?:# )?\[+{title}\]+$", text)
+        part = "".join(part.partition("\n\n")[0] for part in parts)
         lines = re.findall(r"^# (\w+) = (.*?) +# (\(example\))?", part, re.MULTILINE)
         for key, value, example in lines:
             entry = known.table(title).entries[key]

@@ -51,17 +51,23 @@ def held(value: Any) -> list[Any]:
     if isinstance(value, list | tuple):
         return [*value]
     if isinstance(value, gc.StudyResult):
-        return held({**vars(value), "charts": value.charts, "drawn": None})
+        made = {"charts": value.charts, "drawn": None, "coloured": tuple(value.coloured())}
+        return held({**vars(value), **made})
     if isinstance(value, Jet):
         return [*value.c]
     whole = isinstance(value, gc.Result | type | np.ndarray) or not hasattr(value, "__dict__")
     return [] if whole else held(vars(value))
 
 
+def filled(values: Any) -> Any:
+    """An array in which what is masked has a number: nan, or 0 of whole numbers."""
+    return np.ma.filled(values, np.nan if values.dtype.kind in "fc" else 0)
+
+
 def equal(one: Any, other: Any) -> bool:
     """Whether two objects of one type are the same, but for what they hold."""
     if isinstance(one, np.ndarray):
-        one, other = (np.ma.filled(values, np.nan) for values in (one, other))
+        one, other = (filled(values) for values in (one, other))
         return one.dtype.kind == "O" or np.array_equal(one, other, equal_nan=one.dtype.kind in "fc")
     simple = isinstance(one, int | float | complex | str | bytes | CodeType)
     return not simple or one == other or one != one
