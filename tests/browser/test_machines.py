@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import cmath
 import math
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from selenium.webdriver import Chrome
 from selenium.webdriver.common.by import By
 
+import gearcam as gc
+from gearcam.report.page import document, page
 from helpers_browser import complaints, go, open_page, until
 from helpers_pairs import PROFILES
 from helpers_view import served
@@ -78,6 +82,40 @@ def test_paths_are_drawn_until_they_are_unchecked(browser: Chrome, page_of: Buil
     assert browser.execute_script(dashed) == 1
     box.click()
     assert browser.execute_script(dashed) == 0
+
+
+def test_forces_are_drawn_at_their_joints_to_one_scale(browser: Chrome, tmp_path: Path) -> None:
+    loads = [{"on": "C", "force_n": [40, -90]}]
+    output = {"output.studies": ["forces"], "output.files": ["report"]}
+    made = gc.build(gc.load(PROFILES / f"{BAR}.toml").with_({"load": loads, **output}))
+    path = tmp_path / "forces.html"
+    path.write_bytes(page(document(made)))
+    open_page(browser, path)
+    go(browser, PLACE)
+    line = r'<path fill="none" stroke="\S+" stroke-width="(\S+)" d="M(\S+) (\S+) (\S+) (\S+?)"'
+
+    def arrows() -> dict[complex, complex]:
+        """The arrows by where they begin, in pixels."""
+        rows = re.findall(line, browser.execute_script("return gearcam.svg()"))
+        every = [[float(one) for one in row] for row in rows]
+        return {complex(x, y): 1.5 * complex(ex - x, ey - y) / w for w, x, y, ex, ey in every}
+
+    table = made.study("forces").columns
+    sizes = [table[name.replace("_x_n", "_n")].max() for name in table if name.endswith("_x_n")]
+    row = int(np.abs(next(iter(table.values())) - PLACE).argmin())
+    pin = 40.0 * cmath.exp(1j * math.radians(PLACE))
+    (arrow,) = (way for at, way in arrows().items() if abs(at - pin) < 1e-3)
+    force = complex(table["B_x_n"][row], table["B_y_n"][row])
+    assert arrow == pytest.approx(120.0 * force / max(sizes), abs=0.1)
+    assert len(arrows()) == len(sizes) == 4
+    (box,) = (
+        one.find_element(By.TAG_NAME, "input")
+        for one in browser.find_elements(By.CSS_SELECTOR, "#seen label")
+        if "forces in joints, up to" in one.text
+    )
+    box.click()
+    assert not arrows()
+    assert complaints(browser) == []
 
 
 def test_names_move_with_the_machine_until_they_are_unchecked(

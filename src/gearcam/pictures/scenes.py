@@ -90,6 +90,25 @@ class ContactPoints(ShortRepr):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
+class JointForce(ShortRepr):
+    """The force in a joint at the n places of a scene, in the fixed frame.
+
+    Parameters
+    ----------
+    name : str
+        Name of the joint.
+    point : (n,) complex array, mm
+        Where it acts.
+    force : (n,) complex array, N
+        The force; nan where there is none.
+    """
+
+    name: str
+    point: Plane
+    force: Plane
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
 class ColouredCurve(ShortRepr):
     """A curve on a body that can be drawn in the colours of values along it.
 
@@ -134,6 +153,8 @@ class Scene(ShortRepr):
         Points of contact by name.
     pitch : (n,) complex array, mm, optional
         The pitch point.
+    forces : tuple of JointForce
+        Forces drawn as arrows, all to one scale.
     coloured : tuple of ColouredCurve
         Curves that the reader can have coloured; those of one quantity share a scale.
     in_space : mapping of str to SpacePose
@@ -152,6 +173,7 @@ class Scene(ShortRepr):
     bodies: tuple[MovingBody, ...]
     contacts: Mapping[str, ContactPoints] = field(default_factory=dict)
     pitch: Plane | None = None
+    forces: tuple[JointForce, ...] = ()
     coloured: tuple[ColouredCurve, ...] = ()
     in_space: Mapping[str, SpacePose] = field(default_factory=dict)
     eye: tuple[float, float, float] = (0.3, -0.7, 1.0)
@@ -167,6 +189,9 @@ class Scene(ShortRepr):
         for name, contacts in self.contacts.items():
             if len(contacts.start) != len(self.places) + 1:
                 raise ValueError(f"{name}: needs contacts for each place of the driver")
+        for one in self.forces:
+            if not np.shape(one.point) == np.shape(one.force) == self.places.shape:
+                raise ValueError(f"{one.name}: needs a force for each place of the driver")
 
 
 def still(features: tuple[Feature, ...], places: Array) -> MovingBody:

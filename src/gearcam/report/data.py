@@ -13,6 +13,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from gearcam.base.numerals import formatted
 from gearcam.numeric.arrays import Array, Plane, as_pairs
 from gearcam.numeric.pose import SpacePose
 from gearcam.pictures import drawings
@@ -21,6 +22,7 @@ from gearcam.pictures.scenes import (
     SAGITTA,
     ColouredCurve,
     ContactPoints,
+    JointForce,
     MovingBody,
     Scene,
     extent,
@@ -31,6 +33,9 @@ _MM: Final = 4
 
 _RAD: Final = 7
 """Decimals of rotations, rad: less than a tenth of a micrometre at a radius of 1 m."""
+
+_SHARE: Final = 4
+"""Decimals of shares of a force."""
 
 _DIGITS: Final = 6
 """Significant digits of the largest value of a chart; the others have as many decimals, or as many
@@ -51,6 +56,8 @@ def scene_data(scene: Scene) -> dict[str, Any]:
         ``title``; ``driver``, the label of its axis; ``places``; ``closed``; ``start``; ``box``,
         the bounding box of all places as left, bottom, right, top; ``pitch``, flat points or null;
         ``contacts`` by name, each with ``start``, ``x``, ``y``, ``fx``, ``fy`` and ``teeth`` or
+        null; ``forces``, each with ``name``, ``x``, ``y``, and ``fx`` and ``fy``, shares of the
+        largest of all forces, null where there is none; ``largest_force``, that of them, N, or
         null; ``bodies``, each with ``name`` and ``called``, ``link`` (whether it is a link of a
         machine), ``metal`` and ``floor`` (closed chains, filled by the even-odd rule), ``plates``
         (index in ``metal`` of the first chain of each of several plates), ``lines`` (``layer``,
@@ -64,6 +71,8 @@ def scene_data(scene: Scene) -> dict[str, Any]:
         ``up``, directions of the first view of solids.
     """
     names = dict.fromkeys(name for one in scene.coloured for name in one.values)
+    sizes = [np.abs(one.force[np.isfinite(one.force)]).max(initial=0.0) for one in scene.forces]
+    largest = max(map(float, sizes), default=0.0)
     return {
         "title": scene.title,
         "driver": scene.driver,
@@ -74,6 +83,8 @@ def scene_data(scene: Scene) -> dict[str, Any]:
         "bodies": [_body(body) for body in scene.bodies],
         "contacts": {name: _contacts(one) for name, one in scene.contacts.items()},
         "pitch": None if scene.pitch is None else _flat(scene.pitch),
+        "forces": [_force(one, largest) for one in scene.forces],
+        "largest_force": formatted(largest) if largest else None,
         "coloured": [_coloured(one) for one in scene.coloured],
         "scales": {name: _scale(name, scene.coloured) for name in names},
         "solids": {name: _solid(pose) for name, pose in scene.in_space.items()},
@@ -120,6 +131,17 @@ def _body(body: MovingBody) -> dict[str, Any]:
             {"text": text, "x": round(at.real, _MM), "y": round(at.imag, _MM)}
             for text, at in body.names
         ],
+    }
+
+
+def _force(one: JointForce, largest: float) -> dict[str, Any]:
+    shares = one.force / (largest or 1.0)
+    return {
+        "name": one.name,
+        "x": _rounded(one.point.real, _MM),
+        "y": _rounded(one.point.imag, _MM),
+        "fx": _rounded(shares.real, _SHARE),
+        "fy": _rounded(shares.imag, _SHARE),
     }
 
 

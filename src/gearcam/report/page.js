@@ -21,7 +21,8 @@ const page = {
   cycles: 0, // played so far: wheels need not have returned to their start
   // what is shown of the scene
   seen: {
-    points: true, action: true, carry: true, pitch: false, names: true, contacts: [], lines: { PITCH: true },
+    points: true, action: true, carry: true, pitch: false, names: true, forces: true,
+    contacts: [], lines: { PITCH: true },
     colouring: "", // a label of values, or nothing
   },
   colours: palette(),
@@ -191,7 +192,8 @@ function offer() {
   const dashed = new Set(lines.map((line) => line.layer));
   const teeth = scene.bodies.some((body) => body.teeth);
   const named = scene.bodies.some((body) => body.names.length);
-  const own = [teeth, Boolean(scene.pitch), named];
+  const forces = scene.largest_force && `forces in joints, up to ${scene.largest_force} N`;
+  const own = [teeth, Boolean(scene.pitch), named, forces];
   const wanted = JSON.stringify([sets.toSorted(), [...dashed].sort(), ...own]);
   if (wanted === offered) return;
   offered = wanted;
@@ -203,6 +205,7 @@ function offer() {
   }
   if (teeth) check(home, "teeth in contact", seen.carry, (on) => (seen.carry = on));
   if (scene.pitch) check(home, "pitch point", seen.pitch, (on) => (seen.pitch = on));
+  if (forces) check(home, forces, seen.forces, (on) => (seen.forces = on));
   if (named) check(home, "names", seen.names, (on) => (seen.names = on));
   for (const layer of dashed) {
     seen.lines[layer] ??= layer === "PATH";

@@ -192,6 +192,7 @@ function* marksOf(scene, place, cycles, seen, pixel, edge = Infinity) {
   // Auxiliary lines are drawn on top of the bodies.
   for (const [k, body] of scene.bodies.entries()) yield* dashedMarks(body, poses[k], seen);
   if (scene.scales[seen.colouring]) yield* colouredMarks(scene, seen.colouring, poses, pixel);
+  if (seen.forces) yield* forceMarks(scene, place, pixel);
   if (seen.action) yield* actionMarks(found, pixel);
   if (seen.points) yield* found.map((one) => dot(one, 4 * pixel, "contact"));
   const pitch = seen.pitch && pitchAt(scene, place);
@@ -257,15 +258,34 @@ function* dashedMarks(body, pose, seen) {
 // Lines of action through each contact, with the head of an arrow in the direction of the force.
 function* actionMarks(found, pixel) {
   const reach = 60 * pixel;
-  const head = 8 * pixel;
   for (const { x, y, fx, fy } of found) {
-    const [ex, ey] = [x + reach * fx, y + reach * fy];
-    const line = [x - reach * fx, y - reach * fy, ex, ey];
-    const wing = (side) => [ex - head * (fx - side * fy), ey - head * (fy + side * fx)];
-    const tip = [ex, ey, ...wing(0.4), ...wing(-0.4)];
-    yield { chains: [line], closed: false, ink: "contact", width: 1.5 };
-    yield { chains: [tip], closed: true, fill: "contact", ink: "contact" };
+    yield* arrow([x - reach * fx, y - reach * fy], [x + reach * fx, y + reach * fy], 8 * pixel);
   }
+}
+
+// Forces in joints: arrows that begin there, to one scale; short ones have a smaller head.
+function* forceMarks({ places, forces }, place, pixel) {
+  const spot = spotOf(places, place);
+  const [reach, head] = [120 * pixel, 8 * pixel];
+  for (const one of forces) {
+    const near = spot.part < 0.5 ? spot.index : spot.index + 1;
+    if (one.fx[near] === null) continue;
+    const known = one.fx[spot.index] !== null && one.fx[spot.index + 1] !== null;
+    const at = (values) => (known ? between(values, spot) : values[near]);
+    const [x, y, fx, fy] = [one.x, one.y, one.fx, one.fy].map(at);
+    const long = reach * Math.hypot(fx, fy);
+    if (long > pixel) yield* arrow([x, y], [x + reach * fx, y + reach * fy], Math.min(head, long));
+  }
+}
+
+// An arrow from one point to another.
+function* arrow([x, y], [ex, ey], head) {
+  const long = Math.hypot(ex - x, ey - y);
+  const [ux, uy] = [(head * (ex - x)) / long, (head * (ey - y)) / long];
+  const wing = (side) => [ex - ux + side * uy, ey - uy - side * ux];
+  const tip = [ex, ey, ...wing(0.4), ...wing(-0.4)];
+  yield { chains: [[x, y, ex, ey]], closed: false, ink: "contact", width: 1.5 };
+  yield { chains: [tip], closed: true, fill: "contact", ink: "contact" };
 }
 
 function dot({ x, y }, radius, ink) {

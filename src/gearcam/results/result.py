@@ -388,7 +388,9 @@ class Result(Staged):
             for contacts in (scene.contacts, *more)
             for name, points in contacts.items()
         }
-        return replace(scene, contacts=contacts, coloured=(*scene.coloured, *curves))
+        forces = tuple(force for one in studies for force in one.joints(scene))
+        coloured = (*scene.coloured, *curves)
+        return replace(scene, contacts=contacts, coloured=coloured, forces=forces)
 
     def check(self, directory: str | Path = "output") -> BuildOutput:
         """Run the checks and write the summary only; the files of an earlier build are kept.

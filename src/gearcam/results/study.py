@@ -21,7 +21,7 @@ from gearcam.results.written import BuildOutput
 
 if TYPE_CHECKING:
     from gearcam.pictures.charts import Chart
-    from gearcam.pictures.scenes import ColouredCurve, ContactPoints, Scene
+    from gearcam.pictures.scenes import ColouredCurve, ContactPoints, JointForce, Scene
 
 Progress = Callable[[str, int, int], None]
 """Called with the name of the next stage, the number of stages done and their total."""
@@ -53,6 +53,10 @@ def _nothing(_: Scene) -> dict[str, ContactPoints]:
     return {}
 
 
+def _no_forces(_: Scene) -> tuple[JointForce, ...]:
+    return ()
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class StudyResult(NotebookView):
     """The outcome of a study of a result.
@@ -75,6 +79,8 @@ class StudyResult(NotebookView):
         ``drawn()`` returns its `charts`; called when they are first read.
     overlay : callable
         ``overlay(scene)`` returns points of contact for the moving picture, by name.
+    joints : callable
+        ``joints(scene)`` returns forces in joints for the moving picture.
     coloured : callable
         ``coloured()`` returns curves of the moving picture with values along them.
     pages : mapping of str to bytes
@@ -100,6 +106,7 @@ class StudyResult(NotebookView):
     study_findings: tuple[Finding, ...] = ()
     drawn: Callable[[], Mapping[str, Chart]] = dict
     overlay: Callable[[Scene], Mapping[str, ContactPoints]] = _nothing
+    joints: Callable[[Scene], Iterable[JointForce]] = _no_forces
     coloured: Callable[[], Iterable[ColouredCurve]] = tuple
     pages: Mapping[str, bytes] = field(default_factory=dict)
     lines: tuple[str, ...] = ()

@@ -16,7 +16,7 @@ from arch import rules
 from gearcam.numeric.pose import Pose
 from gearcam.pictures.charts import Chart, Limit, Line, MarkedPlace
 from gearcam.pictures.drawings import CENTRODE, OUTLINE, Feature, Path
-from gearcam.pictures.scenes import ColouredCurve, ContactPoints, MovingBody, Scene
+from gearcam.pictures.scenes import ColouredCurve, ContactPoints, JointForce, MovingBody, Scene
 from gearcam.report.data import chart_data, scene_data
 from gearcam.report.page import blocks
 from helpers_built import built
@@ -109,6 +109,25 @@ def test_what_is_no_number_is_null_and_nothing_is_minus_zero():
     assert data["pitch"] == [None, 0.0, 1.0, 0.0]
     assert data["contacts"]["all"]["x"] == [None]
     assert "-0.0" not in json.dumps(data)
+
+
+def test_forces_are_shares_of_the_largest():
+    scene = replace(made("ellipse")[1], contacts={})
+    n = len(scene.places)
+    forces = [(3.0 + 4.0j, "B"), (math.nan, "C"), (-10.0j, "D")]
+    arrows = tuple(
+        JointForce(name=name, point=np.full(n, 1.0 + 2.0j), force=np.full(n, complex(force)))
+        for force, name in forces
+    )
+    data = read(scene_data(replace(scene, forces=arrows)))
+    assert [(one["name"], one["fx"][0], one["fy"][0]) for one in data["forces"]] == [
+        ("B", 0.3, 0.4), ("C", None, None), ("D", 0.0, -1.0)
+    ]  # fmt: skip
+    assert (data["forces"][0]["x"][0], data["forces"][0]["y"][0]) == (1.0, 2.0)
+    assert data["largest_force"] == "10"
+    with pytest.raises(ValueError, match="B: needs a force for each place"):
+        replace(scene, forces=(replace(arrows[0], force=np.zeros(3, dtype=complex)),))
+    assert read(scene_data(scene))["largest_force"] is None
 
 
 def test_curves_of_one_quantity_share_a_scale():

@@ -28,14 +28,18 @@ from gearcam.numeric import narrowing
 from gearcam.numeric.gauss import gauss_cells
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Line
+from gearcam.pictures.scenes import JointForce
 from gearcam.results.study import StudyResult
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from gearcam.kinds.mechanism.parts.friction import BearingSpec
     from gearcam.kinds.mechanism.result import MechanismResult
     from gearcam.linkages.friction import Friction
     from gearcam.linkages.linkage import Linkage
     from gearcam.numeric.arrays import Array, Ints, Mask
+    from gearcam.pictures.scenes import Scene
     from gearcam.results.study import Progress
 
 _NM: Final = 1e-3
@@ -265,6 +269,7 @@ def study_forces(result: MechanismResult, progress: Progress) -> StudyResult:
         group=_facts(joints, q, found, machine),
         study_findings=in_order(findings),
         drawn=partial(_charts, joints, q, found),
+        joints=partial(_arrows, result),
     )
 
 
@@ -495,6 +500,18 @@ def _assumed(joints: JointForces) -> str:
     if any(drive.spec.cam is not None for drive in joints.result.drives):
         words.append("guides and pivots of followers without the side force of their cams")
     return ", ".join(words) or "the driver turns evenly"
+
+
+def _arrows(result: MechanismResult, scene: Scene) -> Iterator[JointForce]:
+    """Yield the forces in joints and guides at the places of a scene."""
+    joints = JointForces(result)
+    q = np.radians(scene.places)
+    q[-1] = np.nextafter(joints.work.linkage.span[1], q[0])
+    found = joints.at(q)
+    for bond, name in joints.labels.items():
+        if isinstance(bond, Hinge | SlidingJoint):
+            point = found.known.place(bond.place)
+            yield JointForce(name=name, point=point, force=found.force(bond))
 
 
 def _charts(joints: JointForces, q: Array, found: Reactions) -> dict[str, Chart]:

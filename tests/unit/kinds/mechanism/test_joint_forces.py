@@ -75,6 +75,24 @@ def test_without_friction_nothing_is_said_of_it() -> None:
     assert made.facts["forces.torque_nm.max"] == pytest.approx(torque.facts["torque.torque_nm.max"])
 
 
+def test_arrows_of_the_moving_picture_are_the_rows_of_the_table_at_the_joints() -> None:
+    made = built(friction=RUBBING, forces={"steps": 24}, output={"studies": ["forces"]})
+    scene, table = made.scene(24), made.study("forces").columns
+    angles = next(iter(table.values()))
+    rows = np.abs(angles - scene.places[:-1, None]).argmin(axis=1)
+    assert angles[rows] == pytest.approx(scene.places[:-1], abs=1e-9)
+    found = {one.name: one for one in scene.forces}
+    assert set(found) == {name.removesuffix("_x_n") for name in table if name.endswith("_x_n")}
+    for name, one in found.items():
+        force = table[f"{name}_x_n"] + 1j * table[f"{name}_y_n"]
+        assert one.force[:-1] == pytest.approx(force[rows], rel=1e-12)
+        assert one.force[-1] == pytest.approx(one.force[0], rel=1e-9)
+    crank = MACHINES["four-bar"]["crank"][0]["length_mm"]
+    pin = crank * np.exp(1j * np.radians(scene.places))
+    assert found["B"].point == pytest.approx(pin)
+    assert built().scene(24).forces == ()
+
+
 def test_charts_have_every_joint_and_hodographs() -> None:
     charts = study().charts
     hinges = [name for name in charts if name.startswith("hodograph_")]
