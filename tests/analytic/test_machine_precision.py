@@ -200,9 +200,11 @@ def test_a_dimension_has_one_tolerance() -> None:
         slider(tolerance=twice).study("precision")
 
 
-def test_trials_without_tolerances_are_refused() -> None:
+def test_trials_and_limits_without_tolerances_are_refused() -> None:
     with pytest.raises(DesignError, match="has no tolerances to try"):
         slider(precision={"trials": 10}).study("precision")
+    with pytest.raises(DesignError, match=r"limits\.deviation_mm.*has no tolerances to judge"):
+        slider(limits={"deviation_mm": 0.1}).study("precision")
 
 
 def test_the_shaft_of_a_drive_by_its_other_name_has_a_place_too() -> None:

@@ -50,6 +50,9 @@ _SHOWN: Final = 3
 _DRAWN: Final = 6
 """Dimensions of each output that are drawn."""
 
+_TOLERANCES: Final = "length_tolerance_mm in [precision], or a table [[tolerance]]"
+"""What gives tolerances."""
+
 _PERCENT: Final = (50, 90, 99)
 """Percentiles of random machines."""
 
@@ -92,10 +95,12 @@ class Tolerated:
                 self.tolerances[spec.of] = float(spec.length or spec.angle or 0.0)
             else:
                 problems.append(found)
-        if self.spec.trials and not problems and not self.given:
-            what, near = "has no tolerances to try", "length_tolerance_mm, or a table [[tolerance]]"
-            key = "precision.trials"
-            problems.append(Problem(what, file=result.design.source, key=key, allowed=near))
+        asked = {"precision.trials": ("try", self.spec.trials)}
+        asked["limits.deviation_mm"] = ("judge", result.design.limits.get("deviation"))
+        for key, (use, value) in asked.items() if not problems and not self.given else ():
+            if value:
+                what, near = f"has no tolerances to {use}", _TOLERANCES
+                problems.append(Problem(what, file=result.design.source, key=key, allowed=near))
         if problems:
             raise DesignError(problems)
 
