@@ -30,6 +30,8 @@ from gearcam.pictures.charts import Chart, Line
 from gearcam.results.study import StudyResult
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from gearcam.kinds.mechanism.asked import Output
     from gearcam.kinds.mechanism.result import MechanismResult
     from gearcam.kinds.mechanism.tolerances import ToleranceSpec
@@ -95,12 +97,8 @@ class Tolerated:
                 self.tolerances[spec.of] = float(spec.length or spec.angle or 0.0)
             else:
                 problems.append(found)
-        asked = {"precision.trials": ("try", self.spec.trials)}
-        asked["limits.deviation_mm"] = ("judge", result.design.limits.get("deviation"))
-        for key, (use, value) in asked.items() if not problems and not self.given else ():
-            if value:
-                what, near = f"has no tolerances to {use}", _TOLERANCES
-                problems.append(Problem(what, file=result.design.source, key=key, allowed=near))
+        if not problems and not self.given:
+            problems += self._needing_tolerances()
         if problems:
             raise DesignError(problems)
 
@@ -124,6 +122,16 @@ class Tolerated:
             near = "tolerance_deg" if angle else "tolerance_mm"
             return Problem(what, file=source, key=key, allowed=near)
         return None
+
+    def _needing_tolerances(self) -> Iterator[Problem]:
+        """Yield what is asked for in vain where there are no tolerances."""
+        design = self.result.design
+        if self.spec.trials:
+            what, key = "has no tolerances to try", "precision.trials"
+            yield Problem(what, file=design.source, key=key, allowed=_TOLERANCES)
+        if design.limits.get("deviation"):
+            what, key = "has no tolerances to judge", "limits.deviation_mm"
+            yield Problem(what, file=design.source, key=key, allowed=_TOLERANCES)
 
     @cached_property
     def given(self) -> bool:
