@@ -49,6 +49,42 @@ def test_all_charts_are_drawn_and_the_text_is_kept(
     assert requests(browser) == [path.as_uri()]
 
 
+SIZE = """
+    const canvas = arguments[0].querySelector("canvas");
+    const { data, width } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    const [xs, ys] = [[], []];
+    for (let k = 0; k < data.length / 4; k++) {
+      const rgb = data.slice(4 * k, 4 * k + 3);
+      if (data[4 * k + 3] > 200 && Math.max(...rgb) - Math.min(...rgb) > 70) {
+        xs.push(k % width);
+        ys.push(Math.floor(k / width));
+      }
+    }
+    const long = (all) => Math.max(...all) - Math.min(...all);
+    return [long(xs), long(ys)];
+"""
+"""Width and height of what is drawn in colour, in pixels."""
+
+
+def test_a_circle_is_round_where_both_axes_have_one_scale(browser: Chrome, tmp_path: Path) -> None:
+    turn = np.linspace(0.0, 6.3, 200)
+    line = Line(label="circle", x=3.0 * np.cos(turn), y=5.0 + 3.0 * np.sin(turn))
+    charts = [Chart(title="c", x="N", y="N", lines=(line,), equal=one) for one in (True, False)]
+    path = tmp_path / "charts.html"
+    path.write_bytes(charts_page("circles", charts, ""))
+    for size in (LAPTOP, PHONE):
+        open_page(browser, path, size)
+        sizes = []
+        for figure in browser.find_elements(By.CLASS_NAME, "chart"):
+            browser.execute_script("arguments[0].scrollIntoView()", figure)
+            until(lambda figure=figure: figure.find_elements(By.TAG_NAME, "canvas"))
+            sizes.append(until(lambda figure=figure: browser.execute_script(SIZE, figure)))
+        (width, height), (wide, high) = sizes
+        assert width == pytest.approx(height, abs=4.0)
+        assert wide > 1.2 * high
+        assert complaints(browser) == []
+
+
 def test_what_is_saved_has_all_digits_of_small_values(
     path: Path, browser: Chrome, tmp_path: Path
 ) -> None:

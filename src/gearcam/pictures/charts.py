@@ -111,6 +111,8 @@ class Chart:
         Marked places on the horizontal axis.
     log : str
         Logarithmic axes: ``x``, ``y`` or ``xy``.
+    equal : bool
+        Whether both axes have one scale, as of a curve in the plane.
     """
 
     title: str
@@ -120,6 +122,7 @@ class Chart:
     limits: tuple[Limit, ...] = ()
     marks: tuple[MarkedPlace, ...] = ()
     log: str = ""
+    equal: bool = False
 
     def __repr__(self) -> str:
         return f"<Chart of {self.title}: {', '.join(line.label for line in self.lines)}>"
@@ -161,6 +164,8 @@ class Chart:
             ax.axvline(mark.value, color="0.5", ls=":", lw=0.8, label=label)
             named.add(mark.label)
         ax.set(title=self.title, xlabel=self.x, ylabel=self.y, xlim=self.ends[0], ylim=self.ends[1])
+        if self.equal:
+            ax.set_aspect("equal", adjustable="datalim")
         ax.grid(visible=True, alpha=0.3)
         if self.limits or self.marks or len(self.lines) > 1:
             small = ax.get_window_extent().width < _SMALL * ax.figure.dpi

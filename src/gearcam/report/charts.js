@@ -120,13 +120,15 @@ class ChartView {
 
   // Replace this chart by another one.
   show(chart) {
-    const shape = (one) => [one.log, ...one.lines.map((line) => line.dots)].join();
+    const shape = (one) => [one.log, one.equal, ...one.lines.map((line) => line.dots)].join();
     const same = shape(chart) === shape(this.chart) && chart.x === this.chart.x;
     this.chart = chart;
     this.describe();
     if (!this.plot) return;
-    if (same) this.plot.setData(this.data());
-    else {
+    if (same) {
+      this.plot.setData(this.data());
+      this.level();
+    } else {
       this.plot.destroy();
       this.plot = null;
       this.draw();
@@ -148,7 +150,7 @@ class ChartView {
     };
     const scale = (name, k) => ({
       distr: this.chart.log.includes(name) ? 3 : 1, // logarithmic or linear
-      range: () => this.chart.ends[k],
+      range: (plot) => this.ends(plot)[k],
     });
     const ticked = (name) =>
       this.chart.log.includes(name)
@@ -170,9 +172,32 @@ class ChartView {
       series: [null, ...this.chart.lines.map((line, k) => this.series(line, k))],
       hooks: { draw: [() => this.marks(), () => this.limits(), () => this.follow()] },
     }, this.data(), this.home);
+    this.level();
     this.plot.over.append(this.cursor);
     if (this.chart.moves) this.plot.over.classList.add("moves");
     this.plot.over.addEventListener("click", (event) => this.clicked(event));
+  }
+
+  // The ends of both axes; of one scale the shorter axis goes on to both sides.
+  ends({ bbox }) {
+    const { equal, ends } = this.chart;
+    if (!equal || !bbox?.width) return ends;
+    const sizes = [bbox.width, bbox.height];
+    const unit = Math.max(...ends.map(([low, high], k) => (high - low) / sizes[k]));
+    return ends.map(([low, high], k) => {
+      const [middle, half] = [0.5 * (low + high), 0.5 * unit * sizes[k]];
+      return [middle - half, middle + half];
+    });
+  }
+
+  // Give both axes one scale, now that their sizes are known.
+  level() {
+    if (!this.chart.equal) return;
+    const [x, y] = this.ends(this.plot).map(([min, max]) => ({ min, max }));
+    this.plot.batch(() => {
+      this.plot.setScale("x", x);
+      this.plot.setScale("y", y);
+    });
   }
 
   series(line, k) {
@@ -295,6 +320,7 @@ class ChartView {
   resize(size = { width: this.home.clientWidth, height: HEIGHT }) {
     if (!this.plot || !size.width || size.width === this.plot.width) return;
     this.plot.setSize(size);
+    this.level();
   }
 
   // Colours have changed.

@@ -195,10 +195,11 @@ def chart_data(name: str, chart: Chart, driver: str) -> dict[str, Any]:
     -------
     dict
         ``name``, ``title``, ``x`` and ``y`` (axis labels), ``log`` (the logarithmic axes),
-        ``moves`` (whether it has a cursor), ``range`` (of the vertical axis, including the limits
-        near the lines), ``ends`` (of both axes, with margins), ``lines`` (``label``, ``x``, ``y``,
-        ``dots``), ``limits`` (``label``, ``value``, ``seen``: whether it is within the range) and
-        ``marks`` on the horizontal axis (``label``, ``value``).
+        ``equal`` (whether both axes have one scale), ``moves`` (whether it has a cursor), ``range``
+        (of the vertical axis, including the limits near the lines), ``ends`` (of both axes, with
+        margins), ``lines`` (``label``, ``x``, ``y``, ``dots``), ``limits`` (``label``, ``value``,
+        ``seen``: whether it is within the range) and ``marks`` on the horizontal axis (``label``,
+        ``value``).
     """
     low, high = chart.range
     across, up = (_significant if axis in chart.log else _digits for axis in "xy")
@@ -208,6 +209,7 @@ def chart_data(name: str, chart: Chart, driver: str) -> dict[str, Any]:
         "x": chart.x,
         "y": chart.y,
         "log": chart.log,
+        "equal": chart.equal,
         "moves": chart.x == driver,
         "range": [low, high],
         "ends": chart.ends,

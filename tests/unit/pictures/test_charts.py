@@ -62,7 +62,7 @@ def test_a_legend_is_beside_small_axes():
     _, small = plt.subplots(2, 4, layout="constrained")
     for ax, name, beside in ((small[0, 1], "ratio", True), (None, "pressure_angle", False)):
         ax = built(PAIR).plot(name, ax=ax)
-        ax.figure.draw_without_rendering()
+        ax.figure.canvas.draw()
         legend, axes = ax.get_legend().get_window_extent(), ax.get_window_extent()
         assert bool(legend.x0 >= axes.x1) is beside
         assert bool(axes.contains(*legend.min)) is not beside
@@ -375,6 +375,16 @@ def test_a_logarithmic_axis_has_a_decade_or_more_and_positive_values_only():
     low, high = found.range
     assert (math.log10(high / low), low * high) == (pytest.approx(1.2), pytest.approx(9.0))
     assert log_chart([1.0], [0.0]).range[0] > 0.0
+
+
+def test_a_curve_in_the_plane_has_axes_of_one_scale():
+    turn = np.linspace(0.0, 6.28, 60)
+    line = Line(label="circle", x=3.0 * np.cos(turn), y=5.0 + 3.0 * np.sin(turn))
+    for equal in (True, False):
+        ax = Chart(title="t", x="N", y="N", lines=(line,), equal=equal).draw()
+        ax.figure.canvas.draw()
+        (left, low), (right, top) = ax.transData.transform([[-3.0, 2.0], [3.0, 8.0]])
+        assert ((right - left) == pytest.approx(top - low)) == equal
 
 
 def test_logarithmic_axes_are_drawn():

@@ -431,6 +431,7 @@ def _charts(under: PairUnderLoad, loaded: LoadedPair) -> dict[str, Chart]:
         title="Force of the frame on the driver's shaft, over its direction",
         x="along the line of centres, N",
         y="across the line of centres, N",
+        equal=True,
         lines=(Line(label="over the turn", x=forces.bearing.real, y=forces.bearing.imag),),
     )
     charts["flank_pressure"] = Chart(

@@ -295,6 +295,7 @@ def _charts(
             title="Shaking force over its direction",
             x="along x, N",
             y="along y, N",
+            equal=True,
             lines=tuple(
                 Line(label=name, x=one.force.real, y=one.force.imag) for name, one in every.items()
             ),

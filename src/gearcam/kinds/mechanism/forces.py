@@ -541,6 +541,7 @@ def _charts(joints: JointForces, q: Array, found: Reactions) -> dict[str, Chart]
                 title=f"Force at {name}, of {bond.by} on {bond.on}, over its direction",
                 x="along x, N",
                 y="along y, N",
+                equal=True,
                 lines=tuple(
                     Line(label=label, x=one.real, y=one.imag) for label, one in turned.items()
                 ),
