@@ -21,7 +21,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.linkages.coordinates import HeldMembers, WorkState
+from gearcam.linkages.coordinates import WorkState
 from gearcam.linkages.efforts import Effort, InertiaForce
 from gearcam.linkages.elements import MemberPoint
 from gearcam.linkages.known import GROUND
@@ -64,7 +64,7 @@ def shaking(linkage: Linkage, efforts: Sequence[Effort], q: Array, speed: float)
         Of the driver, even.
     """
     structure, state = Structure.of(linkage), WorkState(linkage, q, 0, speed)
-    held = HeldMembers(state.known, structure.carriers, structure.slides)
+    held = structure.held(state.known)
     force, moment = np.zeros(q.shape, dtype=complex), np.zeros(q.shape)
     for effort in efforts:
         if isinstance(effort, InertiaForce):
@@ -167,14 +167,10 @@ def with_counterweights(
     radius : float, mm
         Distance of all of them from their hinges.
     """
-    points = [
-        MemberPoint(f"{name}.counterweight", complex(radius * one / abs(one)), name)
-        for name, one in zip(members, unbalances, strict=True)
-        if one
-    ]
-    forces = [
-        InertiaForce.of_mass(f"{name}.counterweight", float(abs(one)) / radius, name)
-        for name, one in zip(members, unbalances, strict=True)
-        if one
-    ]
+    points, forces = [], []
+    for member, one in zip(members, unbalances.tolist(), strict=True):
+        if one:
+            name = f"{member}.counterweight"
+            points.append(MemberPoint(name, radius * one / abs(one), member))
+            forces.append(InertiaForce.of_mass(name, abs(one) / radius, member))
     return Linkage((*linkage.elements, *points), linkage.knots, linkage.closed), forces

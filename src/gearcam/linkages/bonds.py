@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple
+from typing import ClassVar, Final, NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,9 @@ from gearcam.base.display import ShortRepr
 from gearcam.linkages.known import Known
 from gearcam.linkages.plane import turning
 from gearcam.numeric.arrays import Array, Plane
+
+FORCES: Final = ("x", "y", "normal", "force", "tension")
+"""Unknowns of bonds that are forces; the others are moments."""
 
 
 class Wrench(NamedTuple):
@@ -58,7 +61,7 @@ class Bond(ShortRepr, ABC):
     name : str
         Of the joint or the drive.
     on, by : str
-        The member on which its forces are told, and that which exerts them.
+        The member on which its forces act, and the one that exerts them.
     """
 
     unknowns: ClassVar[tuple[str, ...]]

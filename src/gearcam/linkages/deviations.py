@@ -19,7 +19,7 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.linkages.bonds import Bond, Hinge, SlidingJoint
+from gearcam.linkages.bonds import Bond
 from gearcam.linkages.coordinates import WorkCoordinate
 from gearcam.linkages.efforts import AppliedForce
 from gearcam.linkages.elements import Dimension
@@ -103,11 +103,7 @@ def clearance(linkage: Linkage, output: WorkCoordinate, q: Array) -> dict[Bond, 
         In mm or rad, per mm.
     """
     found = reactions(linkage, [AppliedForce(output, lambda _: 1.0)], q)
-    return {
-        bond: np.abs(found.force(bond))
-        for bond in found.structure.bonds
-        if isinstance(bond, Hinge | SlidingJoint)
-    }
+    return {bond: np.abs(found.force(bond)) for bond in found.structure.joints}
 
 
 def places(linkage: Linkage, quantities: Sequence[str], q: Array) -> Array:

@@ -336,6 +336,11 @@ class DyadType(NamedTuple):
     passable: bool
     solve: Solver
 
+    @property
+    def guiding(self) -> int | None:
+        """Index of the member along which the other one slides; None with a hinge between them."""
+        return next((k for k in (0, 1) if f"member{k + 1}" in self.slides), None)
+
 
 _HINGES, _TO_GUIDE, _FROM_GUIDE = (False, False), (False, True), (True, False)
 _SIDES, _AHEAD = ("left", "right"), ("ahead", "behind")

@@ -507,19 +507,14 @@ class Dyad(ShortRepr, Element):
         value = getattr(self.lengths, dimension.field)
         return replace(self, lengths=self.lengths._replace(**{dimension.field: value + by}))
 
-    @property
-    def _guiding(self) -> int | None:
-        """Index of the member along which the other one slides; None with a hinge between them."""
-        return next((k for k in (0, 1) if f"member{k + 1}" in self.kind.slides), None)
-
     def carried(self, carriers: Carriers) -> Carriers:
         """Return its members; the joint between is on the first one, or on what slides.
 
         It is on the second one, too, if a cylinder is the first: it is not fixed to that.
         """
         del carriers
-        slides = self.kind.guides == (False, True) and self._guiding is None
-        last = self._guiding == 0 or slides or self.driven is not None
+        slides = self.kind.guides == (False, True) and self.kind.guiding is None
+        last = self.kind.guiding == 0 or slides or self.driven is not None
         own = self.members[1 if last else 0]
         return {self.joint: own, **{one: one for one in self.members}}
 
@@ -533,7 +528,7 @@ class Dyad(ShortRepr, Element):
                 yield SlidingJoint(guide=end, place=member, slide=slide, **own)
             else:
                 yield Hinge(place=end, **own)
-        (first, second), guiding = self.members, self._guiding
+        (first, second), guiding = self.members, self.kind.guiding
         if guiding is None:
             own = {"name": self.joint, "place": self.joint}
             yield Hinge(on=second, by=first, driven=self.driven or "", **own)

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
-from typing import Generic, NamedTuple, TypeVar
+from typing import Generic, NamedTuple, Self, TypeVar
 
 import numpy as np
 
@@ -44,12 +44,21 @@ class Rubbing(NamedTuple):
     lost: Array
 
 
+@dataclass(frozen=True, kw_only=True)
 class Friction(ShortRepr, ABC, Generic[_Joint]):
-    """Friction of a joint."""
+    """Friction of a joint.
 
-    @abstractmethod
-    def times(self, share: float) -> Friction[_Joint]:
+    Parameters
+    ----------
+    coefficient : float
+        Of friction.
+    """
+
+    coefficient: float
+
+    def times(self, share: float) -> Self:
         """Return the same with a `share` of its coefficient."""
+        return replace(self, coefficient=share * self.coefficient)
 
     @abstractmethod
     def of(self, joint: _Joint, known: Known, own: Array) -> Rubbing:
@@ -78,12 +87,7 @@ class JournalFriction(Friction[Hinge]):
         Of the journal.
     """
 
-    coefficient: float
     radius: float
-
-    def times(self, share: float) -> JournalFriction:
-        """Return the same with a `share` of its coefficient."""
-        return replace(self, coefficient=share * self.coefficient)
 
     @property
     def circle(self) -> float:
@@ -111,12 +115,7 @@ class GuideFriction(Friction[SlidingJoint]):
         Of the guide; infinite if its couple does not matter.
     """
 
-    coefficient: float
     length: float = np.inf
-
-    def times(self, share: float) -> GuideFriction:
-        """Return the same with a `share` of its coefficient."""
-        return replace(self, coefficient=share * self.coefficient)
 
     def of(self, joint: SlidingJoint, known: Known, own: Array) -> Rubbing:
         """Return the force along a `joint` with normal force and couple `own`, at `known`."""

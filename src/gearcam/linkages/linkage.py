@@ -95,6 +95,13 @@ class Linkage(ShortRepr):
         """First and last angle of the driver, rad."""
         return float(self.knots[0]), float(self.knots[-1])
 
+    def even_places(self, steps: int) -> Array:
+        """Return angles of the driver at even steps, rad: the last is just before the end."""
+        low, high = self.span
+        made = np.linspace(low, high, steps + 1)
+        made[-1] = np.nextafter(high, low)
+        return made
+
     @cached_property
     def _angles(self) -> dict[str, tuple[Array, Array]]:
         return {}

@@ -26,7 +26,7 @@ from typing import Any, Final
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.linkages.bonds import Bond, SlidingJoint, Wrench
+from gearcam.linkages.bonds import FORCES, Bond, Hinge, SlidingJoint, Wrench
 from gearcam.linkages.coordinates import HeldMembers, WorkState
 from gearcam.linkages.efforts import Effort
 from gearcam.linkages.elements import Carriers
@@ -44,9 +44,6 @@ with its square."""
 
 _ROUNDING: Final = 1e-9
 """Share of the largest force that is none: what carries nothing has no friction."""
-
-_FORCES: Final = ("x", "y", "normal", "force", "tension")
-"""Unknowns that are forces; the others are moments."""
 
 _SINGULAR: Final = 1e-6
 """Determinant, over that without friction, that is none: the forces would be a million times as
@@ -92,9 +89,18 @@ class Structure(ShortRepr):
         return {one.slide: one for one in self.bonds if isinstance(one, SlidingJoint)}
 
     @cached_property
+    def joints(self) -> tuple[Hinge | SlidingJoint, ...]:
+        """Hinges and guides."""
+        return tuple(one for one in self.bonds if isinstance(one, Hinge | SlidingJoint))
+
+    def held(self, known: Known) -> HeldMembers:
+        """Return the members at what is `known`, for forces on them."""
+        return HeldMembers(known, self.carriers, self.slides)
+
+    @cached_property
     def _forces(self) -> Mask:
         """Which unknowns are forces."""
-        return np.array([name in _FORCES for one in self.bonds for name in one.unknowns])
+        return np.array([name in FORCES for one in self.bonds for name in one.unknowns])
 
     def carried(self, bond: Bond, values: Array, size: float) -> Array:
         """Return the unknowns of a bond without rounding, whose sign would be chance.
@@ -115,7 +121,7 @@ class Structure(ShortRepr):
         """
         own = values[:, self.columns[bond]]
         least = _ROUNDING * np.abs(values[:, self._forces]).max(axis=1, initial=0.0)
-        sizes = [1.0 if one in _FORCES else size for one in bond.unknowns]
+        sizes = [1.0 if one in FORCES else size for one in bond.unknowns]
         return np.where(np.abs(own) > least[:, None] * sizes, own, 0.0)
 
     @cached_property
@@ -238,7 +244,7 @@ def reactions(
     """
     structure = Structure.of(linkage)
     state = WorkState(linkage, np.asarray(q, dtype=float), 0, speed)
-    held = HeldMembers(state.known, structure.carriers, structure.slides)
+    held = structure.held(state.known)
     equilibrium = _Equilibrium(structure, state.known)
     loads, moment = equilibrium.loads(efforts, state, held)
     pairs = [(one, own) for one, own in (friction or {}).items() if one in structure.columns]

@@ -10,8 +10,6 @@ import math
 from collections.abc import Iterator
 from typing import Protocol
 
-import numpy as np
-
 from gearcam.base.findings import Remark, Severity, check
 from gearcam.base.numerals import formatted
 from gearcam.gears.contact import DRIVE, FlankPairs
@@ -19,7 +17,7 @@ from gearcam.gears.subject import CONTACT_RATIO
 from gearcam.gears.subject import KIND as PAIR_KIND
 from gearcam.meshing.edges import NonContact, non_contact
 from gearcam.meshing.settings import KIND
-from gearcam.numeric.arrays import Array, Mask
+from gearcam.numeric.arrays import Array, Mask, runs_of
 
 _SHOWN = 3
 """Largest number of driver-angle ranges that a finding lists."""
@@ -56,9 +54,7 @@ def rows_text(phi1: Array, mask: Mask) -> str:
     mask : (n,) bool array
         Where it holds; neighbouring rows are one range.
     """
-    rows = np.flatnonzero(mask)
-    groups = np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
-    return ranges_text([(float(phi1[one[0]]), float(phi1[one[-1]])) for one in groups])
+    return ranges_text([(float(phi1[first]), float(phi1[last])) for first, last in runs_of(mask)])
 
 
 def arcs_text(found: list[NonContact]) -> str:

@@ -98,6 +98,13 @@ def in_groups(counts: Ints) -> tuple[Ints, Ints]:
     return group, np.arange(len(group)) - (np.cumsum(counts) - counts)[group]
 
 
+def runs_of(mask: Mask) -> list[tuple[int, int]]:
+    """Return the first and the last index of each run of neighbours for which a mask holds."""
+    rows = np.flatnonzero(mask)
+    groups = np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1) if rows.size else []
+    return [(int(one[0]), int(one[-1])) for one in groups]
+
+
 def lengths_along(points: Plane) -> Array:
     """Return the length of a chain of points (n,) from the first up to each of them, (n,)."""
     return np.append(0.0, np.cumsum(np.abs(np.diff(points))))

@@ -102,6 +102,11 @@ def peaks(function: Function, low: Array, high: Array, tolerance: float) -> tupl
     return places[best], values[best]
 
 
+def neighbours(places: Array) -> tuple[Array, Array]:
+    """Return the places before and behind each of rising `places`, (n,); at an end itself."""
+    return np.append(places[:1], places[:-1]), np.append(places[1:], places[-1:])
+
+
 def summits(
     functions: Callable[[Array], Array], samples: Array, low: Array, high: Array, tolerance: float
 ) -> tuple[Ints, Array, Array]:

@@ -187,8 +187,8 @@ class PairUnderLoad:
         def sought(places: Array) -> Array:
             return _sought(self.loaded(places))
 
-        ends = np.append(x[:1], x[:-1]), np.append(x[1:], x[-1:])
-        which, places, values = narrowing.summits(sought, sought(x), *ends, _NARROW * self.travel)
+        ends, width = narrowing.neighbours(x), _NARROW * self.travel
+        which, places, values = narrowing.summits(sought, sought(x), *ends, width)
         largest = [np.flatnonzero(which == number) for number in np.unique(which)]
         return places[[rows[np.argmax(values[rows])] for rows in largest]]
 

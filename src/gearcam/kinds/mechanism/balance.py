@@ -114,10 +114,8 @@ def study_balance(result: MechanismResult, progress: Progress) -> StudyResult:
     progress("balance", 0, 1)
     with result.stage("balance"):
         work = work_of(result.design, result.linkage, result.drives)
-        low, high = work.linkage.span
-        even = np.linspace(low, high, result.design.balance.steps + 1)
-        even[-1] = np.nextafter(high, low)
         weighted = _weighted(result, work) if result.design.balance.counterweights else None
+        even = work.linkage.even_places(result.design.balance.steps)
         x = with_both_sides(even, work.knots)
         if not any(isinstance(one, InertiaForce) for one in work.efforts):
             what, near = "nothing has a mass", "[[mass]], or density_kg_m3 of the pair's wheels"
@@ -147,8 +145,8 @@ def _tops(work: VirtualWork, q: Array) -> Array:
         found = _shaking(work, x)
         return np.stack([np.abs(found.force), np.abs(found.moment)])
 
-    ends = np.append(q[:1], q[:-1]), np.append(q[1:], q[-1:])
-    _, places, _ = narrowing.summits(rows, rows(q), *ends, _NARROW * (q[-1] - q[0]))
+    width = _NARROW * (q[-1] - q[0])
+    _, places, _ = narrowing.summits(rows, rows(q), *narrowing.neighbours(q), width)
     return places
 
 
@@ -211,7 +209,7 @@ def _force_columns(name: str, force: Plane) -> dict[str, Any]:
 
 def _largest(result: MechanismResult, q: Array, values: Any, label: str, unit: str) -> Fact:
     top = int(np.abs(values).argmax())
-    place = f"at {result.driver[0]} = {result.degrees(float(q[top]))} deg"
+    place = f"at {result.place(float(q[top]))}"
     return Fact(float(np.abs(values[top])), label, place=place, unit=unit, shown=True)
 
 

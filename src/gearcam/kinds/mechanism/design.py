@@ -134,7 +134,7 @@ class BalanceSpec(ShortRepr):
     radius: float | None = positive_length(
         example=60, doc="distance of the counterweights from their hinges, for the moment"
     )
-    harmonics: int = param(COUNT, default=6, ge=1, le=100, doc="number of harmonics that are told")
+    harmonics: int = param(COUNT, default=6, ge=1, le=100, doc="highest harmonic in the summary")
     steps: int = param(COUNT, default=720, ge=12, le=100000, doc="even steps of the range")
 
     rules = (

@@ -19,12 +19,13 @@ from gearcam.kinds.mechanism.keys import center_of, way_of
 from gearcam.kinds.mechanism.loaded import work_of
 from gearcam.kinds.mechanism.torque import CHECKS as TORQUE
 from gearcam.kinds.mechanism.torque import DriverEffort
-from gearcam.linkages.bonds import Bond, ChainDrive, Hinge, ShaftDrive, SlidingJoint
+from gearcam.linkages.bonds import FORCES, Bond, ChainDrive, Hinge, SlidingJoint
 from gearcam.linkages.efforts import GRAVITY, INERTIA
 from gearcam.linkages.friction import GuideFriction
 from gearcam.linkages.known import GROUND
 from gearcam.linkages.reactions import Reactions, Structure, UnheldError, reactions
 from gearcam.numeric import narrowing
+from gearcam.numeric.arrays import runs_of
 from gearcam.numeric.gauss import gauss_cells
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Line
@@ -53,6 +54,10 @@ _HALVINGS: Final = 20
 
 _NOISE: Final = 1e-9
 """Share of the largest value that is 0."""
+
+
+Contacts = dict[str, "Array"]
+"""Normal forces between cams and followers at n angles, N, by drives."""
 
 
 class JointForces:
@@ -86,9 +91,9 @@ class JointForces:
         return bond_names(self.structure)
 
     @cached_property
-    def joints(self) -> tuple[Hinge | SlidingJoint, ...]:
-        """Hinges and guides."""
-        return tuple(one for one in self.structure.bonds if isinstance(one, Hinge | SlidingJoint))
+    def joints(self) -> dict[Hinge | SlidingJoint, str]:
+        """Hinges and guides, with their names."""
+        return {one: self.labels[one] for one in self.structure.joints}
 
     @cached_property
     def friction(self) -> dict[Bond, Friction[Any]]:
@@ -155,23 +160,21 @@ class JointForces:
 
     def sizes(self, found: Reactions) -> dict[str, Array]:
         """Return the sizes of the forces of joints and guides, (n,), N."""
-        return {
-            name: np.abs(found.force(bond))
-            for bond, name in self.labels.items()
-            if isinstance(bond, Hinge | SlidingJoint)
-        }
+        return {name: np.abs(found.force(bond)) for bond, name in self.joints.items()}
+
+    def contacts(self, q: Array) -> Contacts:
+        """Return the normal forces between cams and followers, (n,), N, by drives."""
+        return dict(contact_forces(self.result, self.work, q))
 
     def word(self, q: float) -> str:
         """Return a place of the master in words."""
-        return f"{self.result.driver[0]} = {self.result.degrees(q)} deg"
+        return self.result.place(q)
 
     def ranges(self, q: Array, mask: Mask) -> str:
         """Return in words where a `mask` holds, (n,), of rising angles `q`, (n,), rad."""
         if mask.all():
             return "everywhere"
-        rows = np.flatnonzero(mask)
-        groups = np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
-        ends = [[formatted(DEG * float(q[k])) for k in (one[0], one[-1])] for one in groups]
+        ends = [[formatted(DEG * float(q[k])) for k in one] for one in runs_of(mask)]
         words = [low if low == high else f"{low} to {high}" for low, high in ends[:3]]
         more = f" and {len(ends) - 3} more" if len(ends) > 3 else ""
         return f"{self.result.driver[0]} = {', '.join(words)} deg{more}"
@@ -225,8 +228,9 @@ def bond_names(structure: Structure) -> dict[Bond, str]:
 
 def joint_names(linkage: Linkage) -> dict[Bond, str]:
     """Return the names of the hinges and guides of a linkage (see `bond_names`)."""
-    names = bond_names(Structure.of(linkage))
-    return {one: name for one, name in names.items() if isinstance(one, Hinge | SlidingJoint)}
+    structure = Structure.of(linkage)
+    names = bond_names(structure)
+    return {one: names[one] for one in structure.joints}
 
 
 def study_forces(result: MechanismResult, progress: Progress) -> StudyResult:
@@ -257,7 +261,8 @@ def study_forces(result: MechanismResult, progress: Progress) -> StudyResult:
         q = _places(joints)
         found = joints.at(q)
         _demand_finite(joints, q, found)
-        machine = _machine(joints, q, found)
+        contacts = joints.contacts(q)
+        machine = _machine(joints, q, found, contacts)
         limits = result.design.limits
         effort = DriverEffort(peak=machine.peak[0], place=machine.peak[1], others={})
         findings = (*run_checks(CHECKS, machine, limits), *run_checks(TORQUE, effort, limits))
@@ -265,8 +270,8 @@ def study_forces(result: MechanismResult, progress: Progress) -> StudyResult:
         result=result,
         study=result.kind.studies["forces"],
         file="forces.csv",
-        table=_columns(joints, q, found),
-        group=_facts(joints, q, found, machine),
+        table=_columns(joints, q, found, contacts),
+        group=_facts(joints, q, found, machine, contacts),
         study_findings=in_order(findings),
         drawn=partial(_charts, joints, q, found),
         joints=partial(_arrows, result),
@@ -285,29 +290,25 @@ def _demand_finite(joints: JointForces, q: Array, found: Reactions) -> None:
 def _places(joints: JointForces) -> Array:
     """Return the master's angles of the table: even ones, both sides of knots, and extremes."""
     work = joints.work
-    low, high = work.linkage.span
-    even = np.linspace(low, high, joints.result.design.forces.steps + 1)
-    even[-1] = np.nextafter(high, low)
-    x = with_both_sides(even, work.knots)
+    x = with_both_sides(work.linkage.even_places(joints.result.design.forces.steps), work.knots)
+    known, width = joints.at(x), _NARROW * (x[-1] - x[0])
 
-    def sought(q: Array) -> Array:
-        found = joints.at(q)
-        contacts = [force for _, force in contact_forces(joints.result, joints.work, q)]
+    def sought(found: Reactions) -> Array:
+        contacts = joints.contacts(found.known.q).values()
         both = [sign * one for one in (found.moment, *contacts) for sign in (1.0, -1.0)]
         rows = np.stack([*joints.sizes(found).values(), *both])
         return np.where(np.isfinite(rows), rows, -np.inf)
 
-    ends = np.append(x[:1], x[:-1]), np.append(x[1:], x[-1:])
-    samples = sought(x)
-    which, places, values = narrowing.summits(sought, samples, *ends, _NARROW * (high - low))
+    which, places, values = narrowing.summits(
+        lambda q: sought(joints.at(q)), sought(known), *narrowing.neighbours(x), width
+    )
     best = [np.flatnonzero(which == number) for number in np.unique(which)]
     tops = places[[rows[np.argmax(values[rows])] for rows in best]]
-    return np.union1d(np.union1d(x, tops), _switches(joints, x))
+    return np.union1d(np.union1d(x, tops), _switches(joints, x, known.locked, width))
 
 
-def _switches(joints: JointForces, x: Array) -> Array:
+def _switches(joints: JointForces, x: Array, locked: Mask, width: float) -> Array:
     """Return both sides of where friction begins and ends to lock, near angles `x`."""
-    locked = joints.at(x).locked
     at = np.flatnonzero(locked[1:] != locked[:-1])
     if not at.size:
         return x[:0]
@@ -316,11 +317,10 @@ def _switches(joints: JointForces, x: Array) -> Array:
         del rows
         return joints.at(places.ravel()).locked.reshape(places.shape).astype(float)
 
-    width = _NARROW * (x[-1] - x[0])
     return np.concatenate(narrowing.changes(function, x[at], x[at + 1], width))
 
 
-def _machine(joints: JointForces, q: Array, found: Reactions) -> JointedMachine:
+def _machine(joints: JointForces, q: Array, found: Reactions, contacts: Contacts) -> JointedMachine:
     """Return the input of the checks."""
     largest, tipping = {}, {}
     for name, sizes in joints.sizes(found).items():
@@ -338,7 +338,7 @@ def _machine(joints: JointForces, q: Array, found: Reactions) -> JointedMachine:
         if isinstance(bond, ChainDrive) and (found.carried(bond)[:, 0] < 0.0).any()
     }
     locked, pulled = found.locked, dict[str, tuple[float, str]]()
-    for name, force in contact_forces(joints.result, joints.work, q):
+    for name, force in contacts.items():
         off = force < -_NOISE * np.abs(force).max()
         if off.any():
             pulled[name] = (float(-force.min()), joints.ranges(q, off))
@@ -368,7 +368,7 @@ def _free_share(joints: JointForces, q: Array) -> float:
     return math.floor(low * scale) / scale
 
 
-def _columns(joints: JointForces, q: Array, found: Reactions) -> dict[str, Any]:
+def _columns(joints: JointForces, q: Array, found: Reactions, contacts: Contacts) -> dict[str, Any]:
     """Return the columns of ``forces.csv``."""
     columns: dict[str, Any] = {
         f"{joints.result.driver[0]}_deg": DEG * q,
@@ -381,8 +381,7 @@ def _columns(joints: JointForces, q: Array, found: Reactions) -> dict[str, Any]:
     if joints.result.speed is not None:
         columns["power_w"] = columns["driver_torque_nm"] * joints.result.speed
     columns |= _on_wheels(joints, found)
-    for name, force in contact_forces(joints.result, joints.work, q):
-        columns[f"{name}_contact_n"] = force
+    columns |= {f"{name}_contact_n": force for name, force in contacts.items()}
     for bond, name in joints.labels.items():
         own = found.of(bond).T
         if isinstance(bond, Hinge | SlidingJoint):
@@ -392,8 +391,9 @@ def _columns(joints: JointForces, q: Array, found: Reactions) -> dict[str, Any]:
         if isinstance(bond, SlidingJoint):
             columns[f"{name}_couple_nm"] = _NM * own[1]
         elif not isinstance(bond, Hinge):
-            turns = bond.unknowns == ShaftDrive.unknowns
-            columns[f"{name}_{'nm' if turns else 'n'}"] = (_NM if turns else 1.0) * own[0]
+            (unknown,), (values,) = bond.unknowns, own
+            scale, unit = (1.0, "n") if unknown in FORCES else (_NM, "nm")
+            columns[f"{name}_{unit}"] = scale * values
     return {name: np.ma.masked_invalid(values) for name, values in columns.items()}
 
 
@@ -422,7 +422,9 @@ def _efficiency(found: Reactions) -> Array:
     return np.where(ratio > 0.0, ratio, np.nan)
 
 
-def _facts(joints: JointForces, q: Array, found: Reactions, machine: JointedMachine) -> Tree:
+def _facts(
+    joints: JointForces, q: Array, found: Reactions, machine: JointedMachine, contacts: Contacts
+) -> Tree:
     """Return the facts of the study."""
     tree: Tree = {"torque_nm": _moment(joints, q, found)}
     if joints.friction and not found.locked.any():
@@ -433,16 +435,17 @@ def _facts(joints: JointForces, q: Array, found: Reactions, machine: JointedMach
     tree["joints"] = {
         name: {
             "largest_n": Fact(
-                force, f"largest force {_on(joints, name)}", place=f"at {where}", shown=True
+                machine.largest[name][0],
+                f"largest force at {name}, of {bond.by} on {bond.on}",
+                place=f"at {machine.largest[name][1]}",
+                shown=True,
             )
         }
-        for name, (force, where) in machine.largest.items()
+        for bond, name in joints.joints.items()
     }
-    contacts = {
-        name: {"contact_n": _contact(joints, name, q, force)}
-        for name, force in contact_forces(joints.result, joints.work, q)
-    }
-    tree["cams"] = contacts or None
+    tree["cams"] = {
+        name: {"contact_n": _contact(joints, name, q, force)} for name, force in contacts.items()
+    } or None
     tree["locked"] = bool(found.locked.any())
     tree["error"] = Fact(found.apart, "moment by reactions less that by virtual work", unit="")
     return tree | {"assumptions": Fact(_assumed(joints), "assumed", shown=True)}
@@ -456,11 +459,6 @@ def _works(joints: JointForces) -> tuple[float, float, float]:
     sums = (weights @ one for one in (found.work, found.moment, np.abs(found.work)))
     useful, driven, size = map(float, sums)
     return useful, driven, size
-
-
-def _on(joints: JointForces, name: str) -> str:
-    bond = next(one for one, label in joints.labels.items() if label == name)
-    return f"at {name}, of {bond.by} on {bond.on}"
 
 
 def _contact(joints: JointForces, name: str, q: Array, force: Array) -> Fact:
@@ -484,7 +482,7 @@ def _moment(joints: JointForces, q: Array, found: Reactions) -> Fact:
 
 def _assumed(joints: JointForces) -> str:
     """Return what is left out, in words."""
-    plain = [joints.labels[one] for one in joints.joints if one not in joints.friction]
+    plain = [name for one, name in joints.joints.items() if one not in joints.friction]
     words = ["no friction"] if len(plain) == len(joints.joints) else []
     if plain and not words:
         words = [f"no friction in {', '.join(plain)}"]
@@ -508,10 +506,9 @@ def _arrows(result: MechanismResult, scene: Scene) -> Iterator[JointForce]:
     q = np.radians(scene.places)
     q[-1] = np.nextafter(joints.work.linkage.span[1], q[0])
     found = joints.at(q)
-    for bond, name in joints.labels.items():
-        if isinstance(bond, Hinge | SlidingJoint):
-            point = found.known.place(bond.place)
-            yield JointForce(name=name, point=point, force=found.force(bond))
+    for bond, name in joints.joints.items():
+        point = found.known.place(bond.place)
+        yield JointForce(name=name, point=point, force=found.force(bond))
 
 
 def _charts(joints: JointForces, q: Array, found: Reactions) -> dict[str, Chart]:
@@ -528,7 +525,7 @@ def _charts(joints: JointForces, q: Array, found: Reactions) -> dict[str, Chart]
         )
         title = "Moment of the driver"
         charts["torque_friction"] = Chart(title=title, x=axis, y="moment, N m", lines=both)
-    for bond, name in joints.labels.items():
+    for bond, name in joints.joints.items():
         if isinstance(bond, Hinge):
             force = found.force(bond)
             frames = {"in the machine": 1.0 + 0j} | {

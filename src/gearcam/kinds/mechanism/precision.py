@@ -204,9 +204,7 @@ def study_precision(result: MechanismResult, progress: Progress) -> StudyResult:
     with result.stage("precision"):
         progress("precision", 0, 1)
         machine = Tolerated(result)
-        low, high = machine.linkage.span
-        even = np.linspace(low, high, machine.spec.steps + 1)
-        even[-1] = np.nextafter(high, low)
+        even = machine.linkage.even_places(machine.spec.steps)
         q = with_both_sides(even, machine.linkage.knots)
         found = machine.at(q)
         for stem, by in found.items():
@@ -216,7 +214,7 @@ def study_precision(result: MechanismResult, progress: Progress) -> StudyResult:
         peaks = _peaks(machine, q, found)
         trials = _trials(machine, even, progress)
     worst = {
-        stem: (value, _at(result, place), _largest_part(machine, stem, place))
+        stem: (value, result.place(place), _largest_part(machine, stem, place))
         for stem, (value, place) in peaks["worst_case"].items()
         if not machine.outputs[stem].angle
     }
@@ -232,10 +230,6 @@ def study_precision(result: MechanismResult, progress: Progress) -> StudyResult:
     )
 
 
-def _at(result: MechanismResult, q: float) -> str:
-    return f"{result.driver[0]} = {result.degrees(q)} deg"
-
-
 Peaks = dict[str, dict[str, tuple[float, float]]]
 """Largest deviations and their places, by how errors add up, then by outputs."""
 
@@ -248,10 +242,9 @@ def _peaks(machine: Tolerated, q: Array, found: Errors) -> Peaks:
         each = {"worst_case": machine.worst, "root_of_squares": machine.rooted}
         return np.stack([each[how](errors, stem) for how, stem in names])
 
-    ends = np.append(q[:1], q[:-1]), np.append(q[1:], q[-1:])
     width = _NARROW * (q[-1] - q[0])
     which, places_, values = narrowing.summits(
-        lambda x: rows(machine.at(x)), rows(found), *ends, width
+        lambda x: rows(machine.at(x)), rows(found), *narrowing.neighbours(q), width
     )
     peaks: Peaks = {"worst_case": {}, "root_of_squares": {}}
     for number, (how, stem) in enumerate(names):
@@ -320,7 +313,7 @@ def _facts(machine: Tolerated, peaks: Peaks, q: Array, found: Errors, trials: Ar
         for how, places_ in peaks.items() if machine.given else ():
             value, place = places_[stem]
             label = f"largest deviation of {stem}, {how.replace('_', ' ')}"
-            at = f"at {_at(machine.result, place)}"
+            at = f"at {machine.result.place(place)}"
             own[f"{how}_{unit}"] = Fact(scale * value, label, place=at, unit=unit, shown=True)
         own["dimensions"] = _dimension_facts(machine, stem, q, found)
         if trials is not None:
@@ -328,7 +321,7 @@ def _facts(machine: Tolerated, peaks: Peaks, q: Array, found: Errors, trials: Ar
         tree["outputs"][stem] = own
     if trials is not None:
         count = int(np.isnan(trials).any(axis=1).sum())
-        label = "random machines that do not close, of which nothing is told"
+        label = "random machines that do not close; they are left out"
         tree["trials"] = {
             "count": len(trials),
             "open": Fact(count, label, unit="", shown=count > 0),
@@ -353,7 +346,7 @@ def _dimension_facts(machine: Tolerated, stem: str, q: Array, found: Errors) -> 
         factor, per = (1.0 / DEG, "deg") if machine.angle(name) else (1.0, "mm")
         place = float(q[np.abs(found[stem][name]).argmax()])
         value = scale * factor * largest[name]
-        at = f"at {_at(machine.result, place)}"
+        at = f"at {machine.result.place(place)}"
         tree[name.replace(".", "_")] = {
             f"sensitivity_{unit}_per_{per}": Fact(
                 value,

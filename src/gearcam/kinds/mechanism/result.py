@@ -142,6 +142,10 @@ class MechanismResult(Result):
         place = DEG * q
         return in_range(place, low, high) if self.linkage.closed else formatted(place)
 
+    def place(self, q: float) -> str:
+        """Return an angle of the master, rad, with its name, as ``theta = 90 deg``."""
+        return f"{self.driver[0]} = {self.degrees(q)} deg"
+
     def at(self, peak: Peak) -> str:
         """Return the place of a `peak` in words."""
         return f"at {self.degrees(peak.place)} deg"

@@ -265,7 +265,7 @@ def study_torque(result: MechanismResult, progress: Progress | None) -> StudyRes
         top = _largest(work)
         effort = DriverEffort(
             peak=_NM * abs(top.value),
-            place=_place(result, top.place),
+            place=result.place(top.place),
             others={name: _NM * abs(_largest(one).value) for name, one in beside.items()},
             gain=_gain(result.drives[0], work, top.place),
             pulls=tuple(_pulls(result, shafts, ends)),
@@ -286,10 +286,7 @@ def study_torque(result: MechanismResult, progress: Progress | None) -> StudyRes
 
 def _places(result: MechanismResult, work: VirtualWork) -> Array:
     """Return the master's angles of the table, with both sides of knots."""
-    low, high = work.linkage.span
-    even = np.linspace(low, high, result.design.torque.steps + 1)
-    even[-1] = np.nextafter(high, low)  # the values before the end
-    return with_both_sides(even, work.knots)
+    return with_both_sides(work.linkage.even_places(result.design.torque.steps), work.knots)
 
 
 def _columns(result: MechanismResult, work: VirtualWork, q: Array) -> dict[str, Array]:
@@ -297,14 +294,10 @@ def _columns(result: MechanismResult, work: VirtualWork, q: Array) -> dict[str, 
     parts = {part: _NM * np.asarray(one.c[0]) for part, one in work.parts(q).items()}
     total = sum(parts.values(), start=np.zeros(q.shape))
     if not np.isfinite(total).all():
-        where = _place(result, float(q[~np.isfinite(total)][0]))
+        where = result.place(float(q[~np.isfinite(total)][0]))
         raise InfeasibleError(f"a load or spring is not finite at {where}", where="load")
     columns = {f"{result.driver[0]}_deg": DEG * q, "torque_nm": total}
     return columns | {f"{part}_nm": values for part, values in parts.items()}
-
-
-def _place(result: MechanismResult, q: float) -> str:
-    return f"{result.driver[0]} = {result.degrees(q)} deg"
 
 
 def shaft_loads(result: MechanismResult, work: VirtualWork, q: Array) -> Iterator[ShaftLoad]:
@@ -394,7 +387,7 @@ def _pulls(
         if one.loose and -least.value > _NOISE * abs(largest.value):
             unit = "N" if one.column.endswith("_n") else "N m"
             cam = f"drive[{names.index(one.loose)}].cam"
-            yield Pull(cam, -least.value, unit, _place(result, least.place))
+            yield Pull(cam, -least.value, unit, result.place(least.place))
 
 
 def _lifts(drive: PlacedDrive) -> float:
@@ -472,7 +465,7 @@ def _range(result: MechanismResult, work: VirtualWork, meaning: str) -> Tree:
 
 def _extent(result: MechanismResult, ends: Ends, meaning: str, scale: float) -> Fact:
     """Return the least and the largest of what is exerted, times a scale, as a fact."""
-    (least, low), (largest, high) = ((scale * end.value, _place(result, end.place)) for end in ends)
+    (least, low), (largest, high) = ((scale * end.value, result.place(end.place)) for end in ends)
     noise = _NOISE * max(abs(least), abs(largest))
     place = f"least {low}, largest {high}" if largest - least > noise else ""
     return Fact(extent(least, largest), meaning, place=place, shown=True, noise=noise)

@@ -142,11 +142,11 @@ class DyadSpec(MachinePart):
 
     def _idle(self) -> Iterator[Breach]:
         """Yield what has no effect in a dyad of this type."""
-        if self.beta and not {"member1", "member2"} & {*self.kind.slides}:
+        if self.beta and self.kind.guiding is None:
             yield "beta", None, f"does not apply to {self.type}", "with type RTR, RTT or TTR"
         if self.slide_on == 2 and self.type != "RTR":
             yield "slide_on", None, f"does not apply to {self.type}", "with type RTR"
-        guide = next((k for k in (0, 1) if f"member{k + 1}" in self.kind.slides), None)
+        guide = self.kind.guiding
         if guide is not None and self.lengths[guide]:
             what = f"{self.members[guide]} is the guide: its length has no effect"
             near = "0; beside its hinge a guide lies by the other length, with beta_deg = 90"
