@@ -21,7 +21,7 @@ import numpy as np
 from gearcam.base.display import NotebookView, renderer
 from gearcam.base.facts import Fact, Facts
 from gearcam.cams.measures import Extreme
-from gearcam.cams.statics import Touch
+from gearcam.cams.touch import WallTouch
 from gearcam.cams.wall import PitchMotion, Wall
 from gearcam.numeric.arrays import Array
 
@@ -47,9 +47,9 @@ class Cam(NotebookView):
         return {}
 
     @property
-    def touches(self) -> tuple[Touch, ...]:
+    def touches(self) -> tuple[WallTouch, ...]:
         """Where it can press on its follower: by default at each wall."""
-        return tuple(Touch(wall=wall, end=wall.follower, key=wall.key) for wall in self.walls)
+        return tuple(WallTouch(wall=wall, end=wall.follower, key=wall.key) for wall in self.walls)
 
     @cached_property
     def lost_motion(self) -> Extreme | None:

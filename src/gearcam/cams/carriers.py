@@ -18,7 +18,7 @@ from typing import Any, ClassVar, Final, Protocol
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.base.numerals import formatted, in_range
+from gearcam.mechanics.driver_axis import DriverAxis
 from gearcam.mechanics.friction import FrictionSpec
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.jets import Jet, cos, sin
@@ -36,49 +36,6 @@ def unit(angle: Array | float) -> Plane:
     result = np.empty(np.shape(angle), dtype=np.complex128)
     result.real, result.imag = np.cos(angle), np.sin(angle)
     return result
-
-
-@dataclass(frozen=True, kw_only=True)
-class DriverAxis(ShortRepr):
-    """Name and unit of a cam's angle or travel in output.
-
-    Parameters
-    ----------
-    column : str
-        The name of its column.
-    symbol, unit, per : str
-        Symbol and unit of angle or travel; unit of the variable of
-        derivatives.
-    called : str
-        Its name in words.
-    scale : float
-        Unit in output, per rad or mm of the driver position.
-    whole : float
-        Whole turn or travel, in the unit.
-    """
-
-    column: str
-    symbol: str
-    unit: str
-    per: str
-    called: str
-    scale: float
-    whole: float
-
-    @property
-    def label(self) -> str:
-        """The label of its axis."""
-        return f"{self.called} {self.symbol}, {self.unit}"
-
-    def text(self, theta: float) -> str:
-        """Return a driver position as text with its unit, with rounding shown as 0."""
-        return f"{formatted(self.scale * theta, scale=self.whole)} {self.unit}"
-
-    def place(self, theta: float) -> str:
-        """Return a position as text: of a turn its end is its begin."""
-        if self.unit != "deg":
-            return f"at {self.text(theta)}"
-        return f"at {in_range(self.scale * theta, 0.0, self.whole, scale=self.whole)} deg"
 
 
 class Centred(Protocol):

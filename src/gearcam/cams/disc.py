@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from gearcam.base.errors import beyond_limit
 from gearcam.cams.cam import Cam
 from gearcam.cams.followers import Follower
-from gearcam.cams.statics import Touch
+from gearcam.cams.touch import WallTouch
 from gearcam.cams.wall import CHORD_TOLERANCE, Wall
 from gearcam.laws.program import Program
 
@@ -49,10 +49,10 @@ class YokeCam(DiscCam):
     """A disc cam whose follower encloses it (see the module)."""
 
     @property
-    def touches(self) -> tuple[Touch, ...]:
+    def touches(self) -> tuple[WallTouch, ...]:
         """On both sides of the axis (see `Cam.touches`)."""
         first, second = (
-            Touch(wall=self, end=self.follower, key=key, across=across)
+            WallTouch(wall=self, end=self.follower, key=key, across=across)
             for key, across in (("near", 0.0), ("far", math.pi))
         )
         return first, second

@@ -25,7 +25,7 @@ from gearcam.cams.disc import clears_axis, demand_standing
 from gearcam.cams.followers import Follower, Round
 from gearcam.cams.lost_motion import Rest, largest_lost_motion
 from gearcam.cams.measures import Extreme
-from gearcam.cams.statics import Touch
+from gearcam.cams.touch import WallTouch
 from gearcam.cams.wall import CHORD_TOLERANCE, PitchMotion, Wall
 from gearcam.laws.program import Program
 
@@ -60,10 +60,10 @@ class GrooveCam(ShortRepr, Cam):
         return self.inner, self.outer
 
     @property
-    def touches(self) -> tuple[Touch, ...]:
+    def touches(self) -> tuple[WallTouch, ...]:
         """Its inner and outer wall; a relief carries nothing (see `Cam.touches`)."""
         walls = zip((self.inner, self.outer), self.rollers, strict=True)
-        return tuple(Touch(wall=wall, end=end, key=wall.key) for wall, end in walls)
+        return tuple(WallTouch(wall=wall, end=end, key=wall.key) for wall, end in walls)
 
     @property
     def motions(self) -> tuple[PitchMotion, ...]:

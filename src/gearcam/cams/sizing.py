@@ -29,14 +29,14 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.cams.carriers import Rotating
 from gearcam.cams.curve import CamCurve
-from gearcam.cams.follower_loads import DrivenMotion
 from gearcam.cams.followers import Contact, Follower
 from gearcam.cams.placing import followers_of
 from gearcam.cams.spec import FollowerSpec
-from gearcam.cams.statics import pushing
-from gearcam.cams.supports import TotalLoad
+from gearcam.cams.touch import pushing
 from gearcam.laws.program import Program
+from gearcam.mechanics.follower_loads import DrivenMotion
 from gearcam.mechanics.friction import FrictionSpec
+from gearcam.mechanics.supports import TotalLoad
 from gearcam.numeric.arrays import Array, Mask
 from gearcam.numeric.jets import Jet
 
@@ -282,8 +282,8 @@ class Sizing:
         ends, carrier = follower.radius, Rotating()
         support = follower.held(load.friction, self.program.range[1])
         at, tangent = follower.trace(carrier, np.zeros_like(s), follower.start + s, ds, ends)
-        past = carrier.passing(at) - support.velocity(at) * ds
-        push, _ = pushing(at, tangent, past, load.dragged(ends))
+        held = support, ds
+        push, _ = pushing(at, tangent, carrier.passing(at), held, load.dragged(ends))
         force, left = support.normal_force(
             push, load.total_load(DrivenMotion(places.theta, s, ds, d2s)), load.friction
         )

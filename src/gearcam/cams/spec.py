@@ -32,9 +32,6 @@ FOLLOWED: Final = "followed profiles"
 PRECISION: Final = "precision of cams"
 """The checks of the errors that tolerances make."""
 
-FORCES: Final = "forces"
-"""The checks of a study of forces."""
-
 FITTED: Final = "fitted lifts"
 """The checks of lifts whose motion laws were found."""
 

@@ -33,7 +33,7 @@ from gearcam.cams.carriers import Sliding
 from gearcam.cams.followers import Round
 from gearcam.cams.lost_motion import Rest, largest_lost_motion
 from gearcam.cams.measures import Extreme
-from gearcam.cams.statics import Touch
+from gearcam.cams.touch import WallTouch
 from gearcam.cams.trim import crossing_chords
 from gearcam.cams.wall import CHORD_TOLERANCE, OVERSAMPLING, PitchMotion, Wall
 from gearcam.laws.program import Program
@@ -181,9 +181,9 @@ class TranslatingCam(ShortRepr, Cam):
         return (self.lower,) if self.upper is None else (self.lower, self.upper)
 
     @property
-    def touches(self) -> tuple[Touch, ...]:
+    def touches(self) -> tuple[WallTouch, ...]:
         """Its walls (see `Cam.touches`)."""
-        return tuple(Touch(wall=wall, end=self.roller, key=wall.key) for wall in self.walls)
+        return tuple(WallTouch(wall=wall, end=self.roller, key=wall.key) for wall in self.walls)
 
     @property
     def motions(self) -> tuple[PitchMotion, ...]:

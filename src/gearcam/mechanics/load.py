@@ -19,6 +19,9 @@ from gearcam.numeric.arrays import Array
 if TYPE_CHECKING:
     from gearcam.laws.formula_syntax import Expression
 
+FORCES: Final = "forces"
+"""The checks of a study of forces of a cam."""
+
 OF_LIFT: Final = "s"
 """Variable of formulas over the lift, mm or rad."""
 

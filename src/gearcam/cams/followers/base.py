@@ -12,9 +12,9 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import beyond_limit
 from gearcam.cams.carriers import Carrier
-from gearcam.cams.supports import Support
 from gearcam.laws.program import Program
 from gearcam.mechanics.friction import FrictionSpec
+from gearcam.mechanics.supports import Support
 from gearcam.numeric.arrays import Array, Mask, Plane
 from gearcam.numeric.jets import Jet, atan, sqrt
 

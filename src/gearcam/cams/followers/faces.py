@@ -15,9 +15,9 @@ from gearcam.base.numerals import rounded_down
 from gearcam.cams.carriers import Carrier, unit
 from gearcam.cams.followers.base import UPRIGHT, Contact, Follower, Symbol, Values, dot, polar
 from gearcam.cams.followers.rounds import Arm
-from gearcam.cams.supports import Pivot, Support, guide
 from gearcam.laws.program import Program
 from gearcam.mechanics.friction import FrictionSpec
+from gearcam.mechanics.supports import Pivot, Support, guide
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.jets import Jet, asin, sin_cos
 

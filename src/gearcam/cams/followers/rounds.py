@@ -12,9 +12,9 @@ import numpy as np
 
 from gearcam.cams.carriers import Carrier, Pair, unit
 from gearcam.cams.followers.base import UPRIGHT, Contact, Follower, Symbol, Values, dot, polar
-from gearcam.cams.supports import Pivot, Support, guide
 from gearcam.laws.program import Program
 from gearcam.mechanics.friction import FrictionSpec
+from gearcam.mechanics.supports import Pivot, Support, guide
 from gearcam.numeric.arrays import Array, Mask, Plane
 from gearcam.numeric.jets import Jet, atan, sin_cos, sqrt
 

@@ -16,7 +16,6 @@ from gearcam.cams.spec import (
     FITTED,
     FOLLOWED,
     FOLLOWERS,
-    FORCES,
     POINTED,
     PRECISION,
     CamSpec,
@@ -43,7 +42,7 @@ from gearcam.kinds.cam.tables import (
 from gearcam.kinds.shared import AccuracySpec, ForcesSpec, GoalSpec
 from gearcam.mechanics.drive import DriveSpec
 from gearcam.mechanics.friction import FrictionSpec
-from gearcam.mechanics.load import LoadSpec
+from gearcam.mechanics.load import FORCES, LoadSpec
 from gearcam.mechanics.mass import GravitySpec, MassSpec
 from gearcam.mechanics.material import MaterialSpec
 from gearcam.mechanics.spring import SpringSpec
@@ -324,7 +323,7 @@ KIND: Final = Kind(
     check_modules=(
         "gearcam.cams.checks",
         "gearcam.laws.row_checks",
-        "gearcam.cams.force_checks",
+        "gearcam.mechanics.force_checks",
         "gearcam.parts.checks",
     ),
     check_groups=(CAM, "rows of tables", PARTS, FOLLOWED, FITTED, FORCES, PRECISION),

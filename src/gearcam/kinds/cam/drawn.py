@@ -16,8 +16,8 @@ from gearcam.base.findings import limit_of
 from gearcam.base.numerals import formatted
 from gearcam.cams.checks import KIND, pressure_limits
 from gearcam.cams.wall import PitchMotion, Wall
-from gearcam.kinds.cam.charts import over_driver
 from gearcam.kinds.cam.result import pressure_column, rho_column
+from gearcam.kinds.over_driver import over_driver
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.numeric.pose import Pose
@@ -31,7 +31,7 @@ from gearcam.pictures.drawings import (
 from gearcam.pictures.scenes import PLACES, ColouredCurve, ContactPoints, MovingBody, Scene, still
 
 if TYPE_CHECKING:
-    from gearcam.cams.statics import Touch
+    from gearcam.cams.touch import WallTouch
     from gearcam.kinds.cam.result import CamResult
     from gearcam.laws.program import Program
     from gearcam.numeric.arrays import Plane
@@ -190,7 +190,7 @@ def coloured(result: CamResult, theta: Array) -> tuple[ColouredCurve, ...]:
     x, wall, forces = _within(theta, program), np.zeros(0), dict[str, Array]()
     study = result.studies.get("forces")
     if study is not None:
-        from gearcam.kinds.cam.forces import COLOURS, TITLES
+        from gearcam.kinds.follower_forces import COLOURS, TITLES
 
         x, wall = result.places_under_load, study.columns["wall"]
         forces = {TITLES[name][1]: study.columns[name] for name in COLOURS}
@@ -230,7 +230,7 @@ def _within(theta: Array, program: Program) -> Array:
     return with_both_sides(np.append(theta[:-1], end), np.asarray(program.knots))
 
 
-def _along(touch: Touch, x: Array) -> tuple[Plane, Array]:
+def _along(touch: WallTouch, x: Array) -> tuple[Plane, Array]:
     """Return points of contact at positions `x` (n,), nan where none is left, and pressure angles.
 
     Points are in mm in the frame of the cam, angles in rad.

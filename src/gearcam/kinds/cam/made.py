@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 from gearcam.base.errors import ABOVE, beyond_limit
 from gearcam.kinds.cam.design import CamDesign
 from gearcam.kinds.cam.forms.base import FORMS, Form
+from gearcam.kinds.loaded_cam import LoadedCam
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
@@ -19,8 +20,11 @@ from gearcam.results.table_rows import TableRows
 
 if TYPE_CHECKING:
     from gearcam.cams.cam import Cam
-    from gearcam.cams.carriers import Carrier, DriverAxis
+    from gearcam.cams.carriers import Carrier
     from gearcam.cams.followers import Follower
+    from gearcam.cams.spec import FollowerSpec
+    from gearcam.cams.touch import WallTouch
+    from gearcam.mechanics.driver_axis import DriverAxis
     from gearcam.parts.body import Part
     from gearcam.parts.checks import CheckedParts
     from gearcam.pictures.drawings import Drawing, Path
@@ -29,7 +33,7 @@ _MOST_STEPS: Final = 1e6
 """Largest number of steps of a table."""
 
 
-class MadeCam(PartsResult):
+class MadeCam(LoadedCam, PartsResult):
     """A cam with its parts and their drawings, computed on demand (see `CamResult`).
 
     Parameters
@@ -157,6 +161,16 @@ class MadeCam(PartsResult):
     def poses(self) -> tuple[Pose, ...]:
         """Where each cam is on the shaft."""
         return tuple(Pose(height=height) for height in self.form.heights())
+
+    @cached_property
+    def touches(self) -> tuple[WallTouch, ...]:
+        """Where the cam can press on its follower."""
+        return tuple(replace(one, width=self.contact_width) for one in self.cam.touches)
+
+    @property
+    def follower_spec(self) -> FollowerSpec:
+        """The table of the follower."""
+        return self.design.follower
 
     @property
     def contact_width(self) -> float:

@@ -21,8 +21,8 @@ from gearcam.cams.precision import (
     sensitivities,
 )
 from gearcam.cams.spec import PRECISION
-from gearcam.kinds.cam.charts import over_driver
 from gearcam.kinds.cam.tables import SIZES, PrecisionSpec
+from gearcam.kinds.over_driver import over_driver
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Limit, Line
 from gearcam.results.study import StudyResult

@@ -26,7 +26,6 @@ from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.base.findings import CHECKS, limit_of
 from gearcam.base.numerals import decimal, formatted, shortened
 from gearcam.cams.checks import KIND, pressure_limits
-from gearcam.cams.force_checks import FORCES
 from gearcam.cams.placing import followers_of
 from gearcam.cams.sizing import (
     SIZES,
@@ -40,7 +39,8 @@ from gearcam.cams.sizing import (
 from gearcam.kinds.cam.design import CamDesign
 from gearcam.kinds.cam.forms.base import CHORD_TOLERANCE, lift_program
 from gearcam.kinds.cam.tables import GOALS
-from gearcam.kinds.cam.under_load import largest_pressure, loads_of
+from gearcam.kinds.under_load import largest_pressure, loads_of
+from gearcam.mechanics.load import FORCES
 from gearcam.parts.checks import KIND as PARTS_KIND
 
 if TYPE_CHECKING:

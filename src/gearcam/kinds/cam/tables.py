@@ -58,7 +58,7 @@ STUDIES: Final = studies_of(
         done="computed",
         table="forces",
         compute=deferred(f"{_HERE}.forces:study_forces"),
-        demand=deferred(f"{_HERE}.under_load:demand"),
+        demand=deferred("gearcam.kinds.under_load:demand"),
     ),
     Study(
         name="precision",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from gearcam.cams.follower_loads import DrivenMotion
+from gearcam.mechanics.follower_loads import DrivenMotion
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -58,4 +58,4 @@ def _effect(drive: PlacedDrive, q: Array) -> Array:
     x = drive.own(q) % program.period
     s, ds, d2s = program.derivatives(x, 2)
     push, _ = cam.touches[0].push(DrivenMotion(x, s, ds, d2s), support, 0.0)
-    return support.lifting(push.normal, push.at)
+    return push.plain

@@ -11,15 +11,15 @@ import numpy as np
 from gearcam.pictures.charts import Chart, knot_marks
 
 if TYPE_CHECKING:
-    from gearcam.kinds.cam.made import MadeCam
+    from gearcam.kinds.loaded_cam import LoadedCam
 
 
-def over_driver(result: MadeCam) -> Callable[..., Chart]:
+def over_driver(result: LoadedCam) -> Callable[..., Chart]:
     """Return what makes charts over the cam angle or travel, with marks at knots of the motion.
 
     Parameters
     ----------
-    result : MadeCam
+    result : LoadedCam
         The cam.
 
     Returns

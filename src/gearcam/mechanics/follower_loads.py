@@ -5,9 +5,9 @@ on the support, and rub there. A cam that only presses keeps its follower where
 
     Q + sigma*G(0) >= 0
 
-(`gearcam.cams.supports`): Q is the sum of the loads, sigma the sign of the velocity, and G(0) that
-friction. It presses a rising follower onto the cam, and holds one that returns back from it. So the
-spring that just holds the follower is an extreme of the rest, which is all else in that sum,
+(`gearcam.mechanics.supports`): Q is the sum of the loads, sigma the sign of the velocity, and G(0)
+that friction. It presses a rising follower onto the cam, and holds one that returns back from it.
+So the spring that just holds the follower is an extreme of the rest, which is all else in that sum,
 
     preload = max(-(rest + k*s)),        stiffness = max(-(rest + F0)/s),
 
@@ -20,7 +20,7 @@ for a harmonic motion.
 
 Sources: classical (Norton, Rothbart); 000 section 3.5.
 
-Depends on followers, supports, laws and mechanics; numpy only.
+Depends on supports and laws; numpy only.
 """
 
 from __future__ import annotations
@@ -29,18 +29,17 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.cams.followers import Follower
-from gearcam.cams.supports import Support, TotalLoad
 from gearcam.laws.program import Program
 from gearcam.mechanics.friction import FrictionSpec
 from gearcam.mechanics.load import LoadSpec
 from gearcam.mechanics.mass import MassSpec
 from gearcam.mechanics.spring import SpringSpec
+from gearcam.mechanics.supports import Support, TotalLoad
 from gearcam.numeric.arrays import Array, Plane
 
 _SAMPLES = 65
@@ -63,6 +62,29 @@ _ROUNDING = 1e-12
 
 MM = 1e-3
 """Metres in a millimetre: N of kg mm/s2, and N m of N mm."""
+
+
+class Carried(Protocol):
+    """A follower, as far as what acts on it depends on it."""
+
+    @property
+    def angular(self) -> bool:
+        """Whether lifts are angles."""
+        ...
+
+    @property
+    def start(self) -> float:
+        """Position at zero lift, mm or rad."""
+        ...
+
+    @property
+    def load_unit(self) -> tuple[float, str, str]:
+        """Factor from loads, N or N mm, to their unit in output, that unit, and its suffix."""
+        ...
+
+    def mass_point(self, p: Array, distance: float) -> Plane:
+        """Return points in the fixed frame at positions (n,), by the distance from the pivot."""
+        ...
 
 
 class DrivenMotion(NamedTuple):
@@ -93,7 +115,7 @@ class Loads(ShortRepr):
     ----------
     program : Program
         Its lift.
-    follower : Follower
+    follower : Carried
         The follower.
     support : Support
         What holds it.
@@ -108,7 +130,7 @@ class Loads(ShortRepr):
     """
 
     program: Program
-    follower: Follower
+    follower: Carried
     support: Support
     speed: float | None = None
     springs: Sequence[SpringSpec] = ()

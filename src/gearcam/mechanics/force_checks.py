@@ -12,10 +12,10 @@ from gearcam.base.display import ShortRepr
 from gearcam.base.findings import Remark, check
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import TORQUE, Param
-from gearcam.cams.carriers import DriverAxis
-from gearcam.cams.spec import FORCES
-from gearcam.cams.statics import Statics
+from gearcam.mechanics.driver_axis import DriverAxis
 from gearcam.mechanics.hertz import CONTACT_PRESSURE
+from gearcam.mechanics.load import FORCES
+from gearcam.mechanics.statics import Statics
 from gearcam.numeric.arrays import Array, Mask
 
 

@@ -3,8 +3,8 @@
 A *touch* is a place where a cam can press on its follower: one of a disc cam, two where walls or
 rollers hold the follower from both sides. A touch only presses, so that the sign of the load, with
 the friction of what else presses on the support, tells which one carries
-(`gearcam.cams.supports`). Where no touch can carry the follower *lifts off*; where friction leaves
-nothing of the normal force it is *locked*.
+(`gearcam.mechanics.supports`). Where no touch can carry the follower *lifts off*; where friction
+leaves nothing of the normal force it is *locked*.
 
 The contact force acts on the follower with its roller as one body: friction of the roller on its
 pin is a tangential force at its circumference. All work is per unit of the driver's position:
@@ -17,85 +17,41 @@ work; both are held by the tests, as the program gets T from the force and its a
 
 Sources: 000 section 3.5, eqs. (3.58), (3.73), (3.78), (3.85); derived anew.
 
-Depends on followers, supports, wall and mechanics; numpy only.
+Depends on supports and loads; numpy only.
 """
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.cams.follower_loads import DrivenMotion, Loads
-from gearcam.cams.followers import Follower
-from gearcam.cams.supports import Push, Support
-from gearcam.cams.wall import Wall
-from gearcam.numeric.arrays import Array, Ints, Mask, Plane, lengths_along
+from gearcam.mechanics.follower_loads import DrivenMotion, Loads
+from gearcam.mechanics.friction import FrictionSpec
+from gearcam.mechanics.supports import Push, Support
+from gearcam.numeric.arrays import Array, Ints, Mask
 
 _ROUNDING = 1e-12
 """Load over the largest that is rounding."""
 
 
-def pushing(
-    at: Plane, tangent: Plane, past: Plane, share: Array | float, side: int = 1
-) -> tuple[Push, Array]:
-    """Return the force of a profile on what touches it, and the speed of sliding.
+class Touch(ABC, ShortRepr):
+    """A place where a cam can press on its follower."""
 
-    Parameters
-    ----------
-    at, tangent : (n,) complex arrays, mm and 1
-        Points of contact, and tangents of the profile, clockwise.
-    past : (n,) complex array, mm per unit of the driver's position
-        Velocity of the cam past the follower there.
-    share : float or (n,) array
-        Tangential force over normal force.
-    side : {1, -1}
-        Whether the follower is outside the profile.
+    key: str
+    """Name of the wall that presses; empty for the only touch."""
 
-    Returns
-    -------
-    push : Push
-        Its force.
-    slide : (n,) array, mm per unit of the driver's position
-        Velocity along the tangent.
-    """
-    normal = side * 1j * tangent
-    slide = (past * np.conj(tangent)).real
-    return Push(at=at, unit=normal + share * np.sign(slide) * tangent, normal=normal), slide
+    @property
+    @abstractmethod
+    def radius(self) -> float:
+        """Radius of the follower's end there, mm."""
 
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Touch(ShortRepr):
-    """A place where a cam can press on its follower.
-
-    Parameters
-    ----------
-    wall : Wall
-        The wall that presses.
-    end : Follower
-        The follower's end there, without the groove's clearance.
-    key : str
-        Name of the wall; empty for the only touch.
-    across : float, rad
-        How far the cam is turned on where the touch is on the other side of the axis: 0 or pi.
-    """
-
-    wall: Wall
-    end: Follower
-    key: str = ""
-    across: float = 0.0
-
-    def _state(self, x: Array) -> tuple[Array, Array, Array]:
-        """Return position of the wall's follower, its lift and velocity."""
-        if self.across:
-            x = (x + self.across) % self.wall.program.period
-        s, ds = self.wall.program.derivatives(x, 1)
-        return x, s, ds
-
+    @abstractmethod
     def push(self, motion: DrivenMotion, support: Support, share: float) -> tuple[Push, Array]:
-        """Return the force of the wall, and the speed of sliding.
+        """Return the force of the cam, and the speed of sliding.
 
         Parameters
         ----------
@@ -113,37 +69,36 @@ class Touch(ShortRepr):
         slide : (n,) array, mm per unit of the driver's way
             Velocity of the cam past the follower's end, along the tangent.
         """
-        x = motion.x
-        _, s, own = self._state(x)
-        wall, touching = self.wall, self.wall.follower
-        inset = wall.side * touching.radius
-        at, tangent = touching.trace(wall.carrier, np.zeros_like(x), touching.start + s, own, inset)
-        if self.across:
-            at, tangent = -at, -tangent
-        past = motion.way * wall.carrier.passing(at) - support.velocity(at) * motion.ds
-        return pushing(at, tangent, past, share, wall.side)
 
-    def along(self, x: Array) -> Array:
-        """Return how far the contact has come along its wall, mm, at rising positions (n,)."""
-        x, s, ds = self._state(x)
-        wall, touching = self.wall, self.wall.follower
-        inset = wall.side * touching.radius
-        path, _ = touching.trace(wall.carrier, x, touching.start + s, ds, inset)
-        return lengths_along(path)
+    @abstractmethod
+    def drag(self, force: Array, push: Push, friction: FrictionSpec) -> Array:
+        """Return the friction of the cam's bearing, N mm or N, under normal forces (n,), N."""
 
-    def curvature(self, x: Array) -> Array:
-        """Return the relative curvature of wall and follower, 1/mm; infinite on an edge."""
-        x, _, _ = self._state(x)
-        speed = self.wall.curve.contact(x, 0).speed.c[0] + np.zeros_like(x)
-        with np.errstate(divide="ignore"):
-            bent = 1.0 / self.wall.radii(x) + self.end.bend
-        return np.where((speed > 0.0) & ~self.wall.on_edge(x), bent, np.inf)
+    @abstractmethod
+    def contact(self, x: Array) -> tuple[Array, Array]:
+        """Return how cam and follower touch where they are pressed most.
+
+        Parameters
+        ----------
+        x : (n,) array
+            Positions of the driver.
+
+        Returns
+        -------
+        curvature : (n,) array, 1/mm
+            Relative curvature; infinite on an edge.
+        width : (n,) array, mm
+            Normal force over the largest force per mm of the line of contact.
+        """
 
     @property
+    @abstractmethod
     def edges(self) -> Array:
-        """Positions of the driver, (n,), at which it rides on each edge of its wall."""
-        lost = np.array([one.theta for one in self.wall.lost])
-        return np.mod(lost - self.across, self.wall.program.period) if self.across else lost
+        """Positions of the driver, (n,), at which the follower rides on an edge."""
+
+    def reactions(self, force: Array, push: Push) -> dict[str, Array]:  # noqa: ARG002
+        """Return what else the normal forces (n,), N, do to the bearing, as columns of output."""
+        return {}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -176,6 +131,8 @@ class Statics(ShortRepr):
         Force of the cam's bearing on the cam, in that frame.
     curvature : (n,) array, 1/mm
         Relative curvature at the touch that carries; infinite on an edge of cam or follower.
+    width : (n,) array, mm
+        Normal force over the largest force per mm of the line of contact.
     """
 
     force: Array
@@ -191,6 +148,7 @@ class Statics(ShortRepr):
     reactions: dict[str, Array]
     bearing: Array
     curvature: Array
+    width: Array
 
     @property
     def driven(self) -> Mask:
@@ -234,20 +192,20 @@ def solve(
     Statics
     """
     support, friction, total_load = loads.support, loads.friction, loads.total_load(motion)
-    x, ds, way = motion.x, motion.ds, motion.way
-    count = x.shape
+    ds, count = motion.ds, motion.x.shape
     force, reserve = np.full(count, np.nan), np.full(count, np.nan)
     carrying, locked = np.full(count, -1), np.zeros(count, dtype=bool)
     lost = {name: np.zeros(count) for name in ("contact", "support", "bearing")}
     torque, bearing = np.zeros(count), np.zeros(count, dtype=complex)
-    curvature, reactions = np.full(count, np.nan), dict[str, Array]()
+    curvature, width = np.full(count, np.nan), np.full(count, np.nan)
+    reactions: dict[str, Array] = {}
     holding = total_load.holding(support, friction)
     if len(touches) == 1:  # a spring that is solved for leaves rounding where it just holds
         holding[np.abs(holding) <= _ROUNDING * np.abs(total_load.against).max(initial=0.0)] = 0.0
     for number, touch in enumerate(touches):
-        part = share(touch.end.radius)
+        part = share(touch.radius)
         push, slide = touch.push(motion, support, part)
-        asked = holding * support.lifting(push.normal, push.at) >= 0.0
+        asked = holding * push.plain >= 0.0
         found, left = support.normal_force(push, total_load, friction)
         stuck = asked & (left <= 0.0)
         carries = asked & (left > 0.0) & (carrying < 0)
@@ -256,19 +214,23 @@ def solve(
         locked |= stuck
         carrying[carries] = number
         force = np.where(carries, found, force)
-        carrier, pressed = touch.wall.carrier, np.where(carries, found, 0.0)
-        arm = way * (push.unit * np.conj(carrier.passing(push.at))).real
-        drag = carrier.drag(pressed * push.unit, friction)
-        torque += pressed * arm + drag
+        pressed = np.where(carries, found, 0.0)
+        drag = touch.drag(pressed, push, friction)
+        torque += pressed * push.arm + drag
         bearing += pressed * push.unit
         lost["bearing"] += drag
         lost["contact"] += part * pressed * np.abs(slide)
         rubbed = support.friction_of(pressed, push, total_load, friction) * np.abs(ds)
         lost["support"] += np.where(carries, rubbed, 0.0)
-        for name, values in support.reactions(pressed, push, total_load, friction).items():
+        exerted = support.reactions(pressed, push, total_load, friction)
+        for name, values in (exerted | touch.reactions(pressed, push)).items():
             held = reactions.setdefault(name, np.full(count, np.nan))
             held[carries] = values[carries]
-        curvature = np.where(carries, touch.curvature(x), curvature)
+        touching = touch.contact(motion.x)
+        curvature, width = (
+            np.where(carries, new, old)
+            for new, old in zip(touching, (curvature, width), strict=True)
+        )
     none = carrying < 0
     for values in (torque, *lost.values()):
         values[none] = np.nan
@@ -287,4 +249,5 @@ def solve(
         reactions=reactions,
         bearing=bearing,
         curvature=curvature,
+        width=width,
     )

@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearcam.base.errors import DesignError, InfeasibleError, Problem, beyond_limit
-from gearcam.cams.follower_loads import Loads
-from gearcam.cams.statics import Statics, solve
+from gearcam.mechanics.follower_loads import Loads
 from gearcam.mechanics.hertz import line_pressure
+from gearcam.mechanics.statics import Statics, solve
 from gearcam.numeric import narrowing
 from gearcam.numeric.piecewise import with_both_sides
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from gearcam.kinds.cam.made import MadeCam
+    from gearcam.kinds.loaded_cam import LoadedCam
     from gearcam.numeric.arrays import Array, Ints
 
 _TOLD: Final = 0.1
@@ -58,7 +58,7 @@ def demand(design: Any) -> None:
         raise DesignError([problem])
 
 
-def loads_of(result: MadeCam) -> Loads:
+def loads_of(result: LoadedCam) -> Loads:
     """Return what acts on the follower of a cam, its `result`, beside the cam.
 
     Raises
@@ -105,7 +105,7 @@ class UnderLoad:
 
     Parameters
     ----------
-    result : MadeCam
+    result : LoadedCam
         The cam.
 
     Raises
@@ -114,7 +114,7 @@ class UnderLoad:
         As `loads_of` does.
     """
 
-    def __init__(self, result: MadeCam) -> None:
+    def __init__(self, result: LoadedCam) -> None:
         self.result = result
         self.loads = loads_of(result)
 
@@ -131,7 +131,7 @@ class UnderLoad:
         even = period * np.arange(count + 1.0) / count
         even[-1] = np.nextafter(period, 0.0)
         knots = [program.knots, *(one.knots for one in design.load)]
-        knots += [touch.edges for touch in self.result.cam.touches]
+        knots += [touch.edges for touch in self.result.touches]
         x = with_both_sides(even, np.concatenate(knots))
         x = np.union1d(x, self._changes(x))
         return np.union1d(x, self._extremes(x))  # which may lie beside changes
@@ -144,13 +144,13 @@ class UnderLoad:
     def statics(self, x: Array, way: Array) -> Statics:
         """Return the forces at positions `x` of the driver, and each `way`."""
         design = self.result.design
-        dragged = partial(design.follower.dragged, design.friction)
-        return solve(self.result.cam.touches, self.loads, self.loads.motion(x, way), dragged)
+        dragged = partial(self.result.follower_spec.dragged, design.friction)
+        return solve(self.result.touches, self.loads, self.loads.motion(x, way), dragged)
 
     def pressure(self, statics: Statics) -> Array:
         """Return the contact pressure, MPa; infinite where an edge of cam or follower carries."""
-        per_width = statics.force / self.result.contact_width
-        return line_pressure(per_width, statics.curvature, self.result.design.material)
+        material = self.result.design.material
+        return line_pressure(statics.force / statics.width, statics.curvature, material)
 
     def _changes(self, x: Array) -> Array:
         """Return both sides of where something else carries, between positions `x`."""
@@ -234,14 +234,14 @@ class UnderLoad:
         return function
 
 
-def largest_pressure(result: MadeCam) -> float:
+def largest_pressure(result: LoadedCam) -> float:
     """Return the largest contact pressure of a cam, MPa; 0 without any contact under load.
 
     It is infinite where an edge of the cam or the follower carries.
 
     Parameters
     ----------
-    result : MadeCam
+    result : LoadedCam
         The cam.
 
     Raises

@@ -58,13 +58,17 @@ class Push:
         Points of contact in the fixed frame.
     unit : (n,) complex array
         Force for a normal force of 1, with friction at the contact.
-    normal : (n,) complex array
-        The normal, from the cam to the follower.
+    plain, effect : (n,) arrays, 1 or mm
+        What a normal force of 1 does for a rise: by itself, and with friction at the contact.
+    arm : (n,) array, mm or 1
+        Torque or force of the driver, for a normal force of 1 with friction at the contact.
     """
 
     at: Plane
     unit: Plane
-    normal: Plane
+    plain: Array
+    effect: Array
+    arm: Array
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -224,9 +228,9 @@ class StraightGuide(Support):
     ) -> tuple[Array, Array]:
         """Return force and reserve (see `Support.normal_force`)."""
         side, loaded, moment = self._sideways(push, total_load)
-        plain = self.lifting(push.normal, push.at)
+        plain = push.plain
         upward = np.sign(plain)
-        effect, load = upward * self.lifting(push.unit, push.at), upward * total_load.against
+        effect, load = upward * push.effect, upward * total_load.against
         drag = upward * total_load.sense * friction.guide
         forms = [(side, loaded)]
         if friction.guide_length:
@@ -319,9 +323,9 @@ class Pivot(Support):
         self, push: Push, total_load: TotalLoad, friction: FrictionSpec
     ) -> tuple[Array, Array]:
         """Return force and reserve (see `Support.normal_force`)."""
-        plain = self.lifting(push.normal, push.at)
+        plain = push.plain
         upward = np.sign(plain)
-        effect, load = upward * self.lifting(push.unit, push.at), upward * total_load.against
+        effect, load = upward * push.effect, upward * total_load.against
         sense, circle, other = (
             upward * total_load.sense,
             self._circle(friction),

@@ -1,0 +1,327 @@
+"""The study of forces of a cam: statics of its follower, contact pressure, springs."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from gearcam.base.facts import Fact, Tree, extent
+from gearcam.base.findings import limit_of, run_checks
+from gearcam.base.numerals import formatted, shortened
+from gearcam.base.quantities import TORQUE
+from gearcam.kinds.over_driver import over_driver
+from gearcam.kinds.under_load import UnderLoad, efficiency_away_from_rest
+from gearcam.mechanics.follower_loads import Loads
+from gearcam.mechanics.force_checks import Loaded, on_way
+from gearcam.mechanics.hertz import half_width, yield_pressure
+from gearcam.mechanics.load import FORCES
+from gearcam.pictures.charts import Chart, Limit, Line
+from gearcam.results.study import StudyResult
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping
+
+    from gearcam.base.findings import Finding
+    from gearcam.kinds.loaded_cam import LoadedCam
+    from gearcam.numeric.arrays import Array, Ints
+    from gearcam.results.study import Progress
+
+_MIRRORED: Final = (
+    "guide_n",
+    "guide_moment_nmm",
+    "guide_low_n",
+    "guide_high_n",
+    "pivot_x_n",
+)
+"""Reactions that change their sign in the mirror image, which a cam that turns clockwise is."""
+
+_NOISE: Final = 1e-9
+"""Share of the largest force that is 0: where another wall begins to carry little is left."""
+
+
+@dataclass(frozen=True)
+class MoreOfForces:
+    """What a kind of cam adds to the study of its forces.
+
+    Parameters
+    ----------
+    findings : callable
+        Returns findings as they are shown, from those of the checks.
+    charts : callable
+        ``charts(loaded, columns)`` returns further charts.
+    """
+
+    findings: Callable[[Iterable[Finding]], tuple[Finding, ...]]
+    charts: Callable[[Loaded, Mapping[str, Any]], dict[str, Chart]]
+
+
+def forces_of(result: LoadedCam, progress: Progress, more: MoreOfForces) -> StudyResult:
+    """Return the study of the forces of a cam (see `gearcam.mechanics.statics`).
+
+    Parameters
+    ----------
+    result : LoadedCam
+        The cam.
+    progress : Progress
+        Called with what is computed, the number done and their total.
+    more : MoreOfForces
+        What its kind adds.
+
+    Returns
+    -------
+    StudyResult
+        Its rows are those of ``forces.csv``.
+
+    Raises
+    ------
+    InfeasibleError
+        If the cam is impossible, or no stiffness keeps the follower on it.
+    """
+    progress("forces", 0, 1)
+    design = result.design
+    with result.stage("forces"):
+        under = UnderLoad(result)
+        loads, (x, way) = under.loads, under.to_and_fro(result.places_under_load)
+        statics = under.statics(x, way)
+        pressure = under.pressure(statics)
+        half = half_width(statics.force / statics.width, statics.curvature, design.material)
+        width = np.where(np.isinf(pressure), np.nan, half)
+        only_presses = len(result.touches) == 1
+        release = loads.release if only_presses else None
+        _, scale = design.drive.effort
+        turns = scale != 1.0
+        loaded = Loaded(
+            x=x,
+            driver=result.driver,
+            statics=statics,
+            pressure=pressure,
+            pointed=math.isinf(result.follower.bend),
+            yielding=yield_pressure(design.material),
+            torque=scale * statics.torque if turns else np.full(x.shape, np.nan),
+            way=way if len(loads.ways) > 1 else None,
+            release=design.drive.words(release[0]) if release and release[0] else "",
+            loose=_place(result, loads, release) if release and not release[0] else "",
+            holding=_holding(loads),
+        )
+        found = more.findings(run_checks(FORCES, loaded, design.limits))
+    columns = _columns(result, loaded, width)
+    return StudyResult(
+        result=result,
+        study=result.kind.studies["forces"],
+        file="forces.csv",
+        table=columns,
+        group=_facts(result, loads, loaded, release),
+        study_findings=found,
+        drawn=partial(_charts, result, loaded, columns, more),
+    )
+
+
+def _holding(loads: Loads) -> str:
+    """Return what holds the follower on the cam, in words; empty without a spring."""
+    lack = loads.lack
+    if not loads.springs or lack <= 0.0:
+        return ""
+    scale, _, suffix = loads.follower.load_unit
+    force = loads.springs[0].force
+    given = loads.solved.get("preload", 0.0) if force == "solve" else float(force)
+    least = shortened(scale * (given + lack), scale * lack, 3)
+    return f"spring[0].preload_{suffix} = {formatted(least)}"
+
+
+def _columns(result: LoadedCam, loaded: Loaded, width: Array) -> dict[str, Array]:
+    """Return the columns of ``forces.csv``."""
+    x, statics, pressure = loaded.x, loaded.statics, loaded.pressure
+    driver, drive, motion = result.driver, result.design.drive, result.cam.motions[0]
+    (load_scale, _, suffix), (effort, scale) = result.follower.load_unit, drive.effort
+    columns = {
+        driver.column: driver.scale * x,
+        **({} if loaded.way is None else {"direction": loaded.way.astype(int)}),
+        f"load_{suffix}": load_scale * statics.against,
+        "normal_n": statics.force,
+        "wall": statics.carrying + 1,
+        **{
+            name: (motion.hand if name in _MIRRORED else 1.0) * values
+            for name, values in statics.reactions.items()
+        },
+        "bearing_n": np.abs(statics.bearing),
+        effort: scale * statics.torque,
+        "efficiency": statics.efficiency,
+        "reserve": statics.reserve,
+        "pressure_mpa": np.where(loaded.on_edge, np.nan, pressure),
+        "half_width_mm": width,
+    }
+    if drive.speed is not None:
+        watts = 1e-3 * drive.speed
+        columns["power_w"] = watts * statics.torque
+        columns["losses_w"] = watts * sum(statics.lost.values())
+    return {
+        name: values if values.dtype.kind == "i" else np.ma.masked_invalid(values)
+        for name, values in columns.items()
+    }
+
+
+def _extreme(loaded: Loaded, values: Array, label: str, unit: str) -> Fact | None:
+    """Return the range of some values, with the place of the largest, as a fact."""
+    if np.isnan(values).all():
+        return None
+    ends = extent(float(np.nanmin(values)), float(np.nanmax(values)))
+    place = f"largest {loaded.at(int(np.nanargmax(values)))}"
+    noise = _NOISE * float(np.nanmax(np.abs(values)))
+    return Fact(ends, label, place=place, unit=unit, shown=True, noise=noise)
+
+
+def _facts(
+    result: LoadedCam, loads: Loads, loaded: Loaded, release: tuple[float, float, float] | None
+) -> Tree:
+    """Return the facts of the study."""
+    statics, design = loaded.statics, result.design
+    effort, scale = design.drive.effort
+    without = result.follower_spec.without_friction(design.friction)
+    walls = statics.carrying[statics.carrying >= 0]
+    tree: Tree = {
+        "normal_n": _extreme(
+            loaded, np.where(statics.lifted, 0.0, statics.force), "normal force", "N"
+        ),
+        effort: _extreme(
+            loaded,
+            scale * statics.torque,
+            "torque of the cam" if scale != 1.0 else "force of the drive",
+            "N m" if scale != 1.0 else "N",
+        ),
+        "efficiency": _efficiency(loaded),
+        "reserve": _least(loaded, statics.reserve, "share that friction leaves"),
+        **_largest_pressure(loaded),
+        "locked": bool(statics.locked.any()),
+        "lifted": bool(statics.lifted.any()),
+        "reversals": int(np.count_nonzero(np.diff(walls))) or None,
+        "spring": _spring(loads) or None,
+        "friction": Fact(", ".join(without), "friction left out", shown=True) if without else None,
+    }
+    if release is not None and not release[0]:
+        label, place = "lifts off at the lowest speeds", _place(result, loads, release)
+        tree["lifted_at_rest"] = Fact(True, label, place=place, text="yes", shown=True)
+    elif release is not None:
+        quantity = design.drive.quantity
+        tree[f"release_speed{quantity.suffix}"] = Fact(
+            release[0] / quantity.factor,
+            "speed at which the follower lifts off",
+            place=_place(result, loads, release),
+            unit=quantity.unit,
+            shown=True,
+        )
+    return tree
+
+
+def _place(result: LoadedCam, loads: Loads, release: tuple[float, float, float]) -> str:
+    """Return where a follower lifts off, in words."""
+    _, where, way = release
+    return result.driver.place(where) + (on_way(way) if len(loads.ways) > 1 else "")
+
+
+def _least(loaded: Loaded, values: Array, label: str) -> Fact | None:
+    if np.isnan(values).all():
+        return None
+    index = int(np.nanargmin(values))
+    return Fact(float(values[index]), label, place=loaded.at(index), unit="")
+
+
+def _largest_pressure(loaded: Loaded) -> Tree:
+    """Return the largest contact pressure; off the edges of a profile, where it has any."""
+    values = np.where(loaded.on_edge, np.nan, loaded.pressure)
+    if np.isnan(values).all():
+        return {}
+    name, off = (
+        ("pressure_off_edges_mpa", ", off edges") if loaded.on_edge.any() else ("pressure_mpa", "")
+    )
+    index = int(np.nanargmax(values))
+    label = f"largest contact pressure{off}"
+    return {name: Fact(float(values[index]), label, place=loaded.at(index), unit="MPa", shown=True)}
+
+
+def _efficiency(loaded: Loaded) -> Tree | None:
+    """Return the overall efficiency, of the work against loads, and the least one."""
+    statics = loaded.statics
+    driven = statics.driven
+    if not driven.any():
+        return None
+    got = _integral(loaded.x, np.where(driven, statics.useful, 0.0))
+    put = _integral(loaded.x, np.where(driven, statics.torque, 0.0))
+    least = efficiency_away_from_rest(statics)
+    return {
+        "overall": Fact(got / put, "efficiency against the loads", unit="", shown=True),
+        "least": _least(loaded, least, "least efficiency"),
+    }
+
+
+def _integral(x: Array, y: Array) -> float:
+    return float(np.sum(0.5 * (y[1:] + y[:-1]) * np.abs(np.diff(x))))
+
+
+def _spring(loads: Loads) -> Tree:
+    """Return the solved values of springs as facts."""
+    scale, _, suffix = loads.follower.load_unit
+    per = "rad" if loads.follower.angular else "mm"
+    names = {"preload": f"preload_{suffix}", "stiffness": f"stiffness_{suffix}_{per}"}
+    return {
+        names[what]: Fact(scale * value, f"least {what} of the spring", shown=True)
+        for what, value in loads.solved.items()
+    }
+
+
+TITLES: Final = {
+    "normal_n": ("Normal force between cam and follower", "normal force, N"),
+    "torque_nm": ("Torque of the cam", "torque, N m"),
+    "drive_n": ("Force that drives the cam", "force, N"),
+    "pressure_mpa": ("Contact pressure (Hertz)", "contact pressure, MPa"),
+    "efficiency": ("Efficiency", "efficiency"),
+}
+"""Titles and axes of charts by columns."""
+
+COLOURS: Final = ("normal_n", "pressure_mpa")
+"""Columns that the profile can be coloured by."""
+
+
+def on_each_way(loaded: Loaded) -> Iterator[tuple[str, Ints]]:
+    """Yield the name of each way, to follow a label, and its rows by rising positions."""
+    rows = np.arange(len(loaded.x))
+    if loaded.way is None:
+        yield "", rows
+    else:
+        yield ", forward", rows[loaded.way > 0.0]
+        yield ", back", rows[loaded.way < 0.0][::-1]
+
+
+def _charts(
+    result: LoadedCam, loaded: Loaded, columns: Mapping[str, Any], more: MoreOfForces
+) -> dict[str, Chart]:
+    """Return charts of forces over the driver, and those that the kind adds."""
+    chart, column = over_driver(result), result.driver.column
+    given = result.design.limits
+    limits = {
+        "pressure_mpa": limit_of(FORCES, "contact-pressure", given),
+        "torque_nm": limit_of(FORCES, "drive-torque", given) / TORQUE.factor,
+    }
+    charts = {}
+    for name, (title, axis) in TITLES.items():
+        values = np.ma.filled(columns[name], np.nan) if name in columns else None
+        if values is None or not np.isfinite(values).any():
+            continue
+        most = limits.get(name)
+        charts[name.partition("_")[0]] = chart(
+            title=title,
+            y=axis,
+            lines=tuple(
+                Line(
+                    label=axis.partition(",")[0] + way,
+                    x=np.asarray(columns[column])[rows],
+                    y=values[rows],
+                )
+                for way, rows in on_each_way(loaded)
+            ),
+            limits=(Limit(label="limit", value=most),) if most else (),
+        )
+    return charts | more.charts(loaded, columns)
