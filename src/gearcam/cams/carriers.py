@@ -196,8 +196,7 @@ class Rotating(Carrier):
 
     def drag(self, force: Plane, friction: FrictionSpec) -> Array:
         """Return the moment of friction of its journals (see `Carrier.drag`)."""
-        circle = friction.journal * math.sin(math.atan(friction.joint))
-        return circle * np.abs(force)
+        return friction.circle * np.abs(force)
 
     def stand(self, follower: Centred, z: Plane, near: Array) -> tuple[Array, Array, Plane]:
         """Return where the centres are on the points (see `Carrier.stand`)."""

@@ -30,15 +30,6 @@ if TYPE_CHECKING:
     from gearcam.numeric.arrays import Array, Ints
     from gearcam.results.study import Progress
 
-_MIRRORED: Final = (
-    "guide_n",
-    "guide_moment_nmm",
-    "guide_low_n",
-    "guide_high_n",
-    "pivot_x_n",
-)
-"""Reactions that change their sign in the mirror image, which a cam that turns clockwise is."""
-
 _NOISE: Final = 1e-9
 """Share of the largest force that is 0: where another wall begins to carry little is left."""
 
@@ -53,10 +44,13 @@ class MoreOfForces:
         Returns findings as they are shown, from those of the checks.
     charts : callable
         ``charts(loaded, columns)`` returns further charts.
+    columns : callable
+        Returns further columns.
     """
 
     findings: Callable[[Iterable[Finding]], tuple[Finding, ...]]
     charts: Callable[[Loaded, Mapping[str, Any]], dict[str, Chart]]
+    columns: Callable[[Loaded], dict[str, Any]] = lambda _: {}
 
 
 def forces_of(result: LoadedCam, progress: Progress, more: MoreOfForces) -> StudyResult:
@@ -108,7 +102,7 @@ def forces_of(result: LoadedCam, progress: Progress, more: MoreOfForces) -> Stud
             holding=_holding(loads),
         )
         found = more.findings(run_checks(FORCES, loaded, design.limits))
-    columns = _columns(result, loaded, width)
+    columns = _columns(result, loaded, width, more)
     return StudyResult(
         result=result,
         study=result.kind.studies["forces"],
@@ -132,10 +126,13 @@ def _holding(loads: Loads) -> str:
     return f"spring[0].preload_{suffix} = {formatted(least)}"
 
 
-def _columns(result: LoadedCam, loaded: Loaded, width: Array) -> dict[str, Array]:
+def _columns(
+    result: LoadedCam, loaded: Loaded, width: Array, more: MoreOfForces
+) -> dict[str, Array]:
     """Return the columns of ``forces.csv``."""
     x, statics, pressure = loaded.x, loaded.statics, loaded.pressure
     driver, drive, motion = result.driver, result.design.drive, result.cam.motions[0]
+    mirrored = motion.follower.held(result.design.friction, 0.0).mirrored
     (load_scale, _, suffix), (effort, scale) = result.follower.load_unit, drive.effort
     columns = {
         driver.column: driver.scale * x,
@@ -144,7 +141,7 @@ def _columns(result: LoadedCam, loaded: Loaded, width: Array) -> dict[str, Array
         "normal_n": statics.force,
         "wall": statics.carrying + 1,
         **{
-            name: (motion.hand if name in _MIRRORED else 1.0) * values
+            name: (motion.hand if name in mirrored else 1.0) * values
             for name, values in statics.reactions.items()
         },
         "bearing_n": np.abs(statics.bearing),
@@ -153,6 +150,7 @@ def _columns(result: LoadedCam, loaded: Loaded, width: Array) -> dict[str, Array
         "reserve": statics.reserve,
         "pressure_mpa": np.where(loaded.on_edge, np.nan, pressure),
         "half_width_mm": width,
+        **more.columns(loaded),
     }
     if drive.speed is not None:
         watts = 1e-3 * drive.speed

@@ -14,6 +14,8 @@ import numpy as np
 from gearcam.base.adjustments import text_of
 from gearcam.base.errors import ABOVE, InfeasibleError, beyond_limit
 from gearcam.base.findings import Finding, in_order, run_checks
+from gearcam.base.numerals import formatted
+from gearcam.kinds.loaded_cam import LoadedCam
 from gearcam.kinds.shared import turn_in_steps
 from gearcam.numeric.arguments import angles
 from gearcam.numeric.arrays import Array
@@ -29,6 +31,9 @@ if TYPE_CHECKING:
     from trimesh import Trimesh
 
     from gearcam.base.adjustments import Changes
+    from gearcam.mechanics.driver_axis import DriverAxis
+    from gearcam.spatial.loaded import RollerTouch
+    from gearcam.spatial.walls import RollerWall
 
 
 _STEEP: Final = "pressure-angle"
@@ -48,7 +53,7 @@ ORDERS: Final = (("velocity", 1, ""), ("acceleration", 2, "2"), ("jerk", 3, "3")
 """Derivatives of a motion: name, order, and this as the end of a unit."""
 
 
-class GriddedCam(Result):
+class GriddedCam(LoadedCam, Result):
     """Result of a cam in space, computed on demand: what all have alike.
 
     Parameters
@@ -70,8 +75,54 @@ class GriddedCam(Result):
     most_facets: ClassVar[int]
     """Largest number of triangles that a solid is made from: ten seconds, and a gigabyte."""
 
-    program: Any
-    cam: Any
+    @cached_property
+    def touches(self) -> tuple[RollerTouch, ...]:
+        """Where the cam can press on its follower (see `LoadedCam`).
+
+        Raises
+        ------
+        InfeasibleError
+            If a wall is undercut.
+        """
+        for wall in self.cam.walls:
+            self.demand_whole(wall)
+        return self.cam.touches
+
+    @property
+    def driver(self) -> DriverAxis:
+        """Name and unit of the cam angle in output."""
+        from gearcam.cams.carriers import Rotating
+
+        return Rotating().driver
+
+    roller_key: ClassVar[str]
+    """Key of the radius of the roller."""
+
+    def demand_whole(self, wall: RollerWall) -> None:
+        """Refuse a wall that the roller cuts away at another angle.
+
+        Parameters
+        ----------
+        wall : RollerWall
+            A wall of the cam.
+
+        Raises
+        ------
+        InfeasibleError
+            If it is undercut.
+        """
+        if not wall.undercut:
+            return
+        most = wall.allowed_radius
+        at = formatted(math.degrees(wall.spread.theta), 5)
+        raise beyond_limit(
+            f"the {wall.key} wall is undercut at {at} deg, and has no whole surface",
+            self.roller_key,
+            wall.cam.roller.radius,
+            most,
+            "the limit is the largest roller without undercut",
+            near=most,
+        )
 
     @cached_property
     @abstractmethod

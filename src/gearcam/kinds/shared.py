@@ -13,6 +13,7 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import ABOVE, beyond_limit
 from gearcam.base.quantities import ANGLE, COUNT, TEXT, fixed, param
+from gearcam.base.registry import deferred
 from gearcam.base.rules import Breach, distinct
 from gearcam.designs.outputs import OutputSpec, pose_param
 from gearcam.results.kind import Study
@@ -55,6 +56,19 @@ class AccuracySpec(ShortRepr):
 
 METHODS: Final = ("random", "nsga2", "tpe", "scipy")
 """How `gearcam optimize` may search."""
+
+
+def forces_study(compute: str) -> Study:
+    """Return the study of the forces of a cam, by what computes it, as `deferred` names it."""
+    return Study(
+        name="forces",
+        key="forces",
+        doc="Compute forces, torque, efficiency and contact pressure; write DIR/NAME/forces.csv.",
+        done="computed",
+        table="forces",
+        compute=deferred(compute),
+        demand=deferred("gearcam.kinds.under_load:demand"),
+    )
 
 
 @dataclass(frozen=True, kw_only=True)

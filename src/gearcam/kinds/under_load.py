@@ -82,6 +82,7 @@ def loads_of(result: LoadedCam) -> Loads:
         masses=design.mass,
         pull=-pull.conjugate() if motion.clockwise else pull,
         friction=design.friction,
+        side=-1.0 if len(result.touches) == 1 and result.touches[0].above else 1.0,
     )
     if math.isinf(loads.solved.get("stiffness", 0.0)):
         raise _no_stiffness(loads)

@@ -127,6 +127,8 @@ class Loads(ShortRepr):
         Acceleration of gravity, in the frame of a cam that turns counter-clockwise.
     friction : FrictionSpec
         Coefficients of friction.
+    side : {1, -1}
+        Whether a cam that only presses does so against the loads, or from above.
     """
 
     program: Program
@@ -138,6 +140,7 @@ class Loads(ShortRepr):
     masses: Sequence[MassSpec] = ()
     pull: complex = 0j
     friction: FrictionSpec = field(default_factory=FrictionSpec)
+    side: float = 1.0
 
     @property
     def _unit(self) -> float:
@@ -250,7 +253,7 @@ class Loads(ShortRepr):
         """The force against a rise by which the loads are too small to hold the follower."""
 
         def missing(motion: DrivenMotion) -> Array:
-            return -self.total_load(motion).holding(self.support, self.friction)
+            return -self.side * self.total_load(motion).holding(self.support, self.friction)
 
         return self._largest(missing)[0]
 
@@ -290,7 +293,8 @@ class Loads(ShortRepr):
         """
         s, d2s = motion.s, motion.d2s
         sense, weight, hurry = self._sense(motion), self._weights(s)[1], self._hurry(motion)
-        a, b = self.held_still(motion), self.inertia * d2s
+        found = sense, self.held_still(motion), self.inertia * d2s
+        sense, a, b = (self.side * one for one in found)
 
         def drag(force: Plane) -> Array:
             return np.abs(sense) * self.support.drag(force, self.friction)

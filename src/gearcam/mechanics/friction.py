@@ -65,6 +65,11 @@ class FrictionSpec(ShortRepr):
         """Radius of shaft and pivot, mm; 0 if none is given."""
         return 0.0 if self.journal_radius is None else self.journal_radius[0]
 
+    @property
+    def circle(self) -> float:
+        """Radius of the friction circle of shaft and pivot, mm."""
+        return self.journal * math.sin(math.atan(self.joint))
+
     def rolling(self, radius: float) -> float:
         """Return the share of its load that turns a roller, at its circumference.
 

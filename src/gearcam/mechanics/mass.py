@@ -87,7 +87,8 @@ class GravitySpec(ShortRepr):
         ge=-360,
         le=360,
         example=-90,
-        doc="direction of the pull, from the x axis of the assembled cam, or of the machine",
+        doc="direction of the pull, from the x axis of the assembled cam, or of the machine; of a "
+        "cam in space from y towards z, the cam's axis, of a globoidal cam from x towards z",
     )
     g: float = param(ACCELERATION, default=G, ge=0, le=1000, doc="acceleration")
 

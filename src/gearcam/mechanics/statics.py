@@ -32,7 +32,7 @@ from gearcam.base.display import ShortRepr
 from gearcam.mechanics.follower_loads import DrivenMotion, Loads
 from gearcam.mechanics.friction import FrictionSpec
 from gearcam.mechanics.supports import Push, Support
-from gearcam.numeric.arrays import Array, Ints, Mask
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
 _ROUNDING = 1e-12
 """Load over the largest that is rounding."""
@@ -43,6 +43,8 @@ class Touch(ABC, ShortRepr):
 
     key: str
     """Name of the wall that presses; empty for the only touch."""
+    above: bool = False
+    """Whether it presses against the direction of a rise; of interest for the only touch."""
 
     @property
     @abstractmethod
@@ -95,6 +97,10 @@ class Touch(ABC, ShortRepr):
     @abstractmethod
     def edges(self) -> Array:
         """Positions of the driver, (n,), at which the follower rides on an edge."""
+
+    def radial(self, push: Push) -> Plane:
+        """Return the force on the cam's bearing, across its axis, for a normal force of 1."""
+        return push.unit
 
     def reactions(self, force: Array, push: Push) -> dict[str, Array]:  # noqa: ARG002
         """Return what else the normal forces (n,), N, do to the bearing, as columns of output."""
@@ -217,7 +223,7 @@ def solve(
         pressed = np.where(carries, found, 0.0)
         drag = touch.drag(pressed, push, friction)
         torque += pressed * push.arm + drag
-        bearing += pressed * push.unit
+        bearing += pressed * touch.radial(push)
         lost["bearing"] += drag
         lost["contact"] += part * pressed * np.abs(slide)
         rubbed = support.friction_of(pressed, push, total_load, friction) * np.abs(ds)

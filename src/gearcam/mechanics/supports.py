@@ -37,9 +37,9 @@ Depends on numeric; numpy only.
 
 from __future__ import annotations
 
-import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -109,6 +109,9 @@ class TotalLoad:
 
 class Support(ABC, ShortRepr):
     """What holds a follower."""
+
+    mirrored: ClassVar[tuple[str, ...]]
+    """Reactions that change their sign in the mirror image, which a cam that turns clockwise is."""
 
     @abstractmethod
     def velocity(self, z: Plane) -> Plane:
@@ -205,6 +208,8 @@ class StraightGuide(Support):
 
     direction: complex
     middle: complex
+
+    mirrored = "guide_n", "guide_moment_nmm", "guide_low_n", "guide_high_n"
 
     def velocity(self, z: Plane) -> Plane:
         """Return the direction (see `Support.velocity`)."""
@@ -306,6 +311,8 @@ class Pivot(Support):
     at: complex
     spin: float
 
+    mirrored = ("pivot_x_n",)
+
     def velocity(self, z: Plane) -> Plane:
         """Return velocities around the pivot (see `Support.velocity`)."""
         return 1j * self.spin * (z - self.at)
@@ -313,11 +320,6 @@ class Pivot(Support):
     def hurrying(self, z: Plane, ds: Array, d2s: Array) -> Plane:
         """Return accelerations around the pivot and towards it (see `Support.hurrying`)."""
         return (1j * self.spin * d2s - (self.spin * ds) ** 2) * (z - self.at)
-
-    @staticmethod
-    def _circle(friction: FrictionSpec) -> float:
-        """Return the radius of the circle of friction, mm."""
-        return friction.journal * math.sin(math.atan(friction.joint))
 
     def normal_force(
         self, push: Push, total_load: TotalLoad, friction: FrictionSpec
@@ -328,7 +330,7 @@ class Pivot(Support):
         effect, load = upward * push.effect, upward * total_load.against
         sense, circle, other = (
             upward * total_load.sense,
-            self._circle(friction),
+            friction.circle,
             total_load.resultant,
         )
         square, size = circle**2 * np.abs(sense), np.abs(push.unit)
@@ -344,7 +346,7 @@ class Pivot(Support):
 
     def drag(self, force: Plane, friction: FrictionSpec) -> Array:
         """Return the moment of friction in the pivot, N mm (see `Support.drag`)."""
-        return self._circle(friction) * np.abs(force)
+        return friction.circle * np.abs(force)
 
     def friction_of(
         self, force: Array, push: Push, total_load: TotalLoad, friction: FrictionSpec

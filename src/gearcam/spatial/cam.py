@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Final
 
 import numpy as np
@@ -23,6 +23,7 @@ from gearcam.numeric.roots import bracketed_root
 from gearcam.spatial.envelope import RollerAxis, RollerContact, touched
 from gearcam.spatial.extremes import Spot, boxes_between, lowest
 from gearcam.spatial.guides import AcrossGuide, carried
+from gearcam.spatial.loaded import ContactLine
 from gearcam.spatial.walls import ROOT, RollerCam, RollerWall
 
 _WIDEST: Final = 4.0
@@ -50,7 +51,7 @@ class SpatialCam(RollerCam):
         its side of the rib. 0: one roller makes all walls.
     """
 
-    guide: AcrossGuide
+    guide: AcrossGuide  # pyright: ignore[reportIncompatibleMethodOverride]
     inner: float
     floor: float
     outer_radius: float
@@ -68,7 +69,7 @@ class SpatialCam(RollerCam):
         return _WIDEST * self.outer_radius
 
     @property
-    def mean_radius(self) -> float:
+    def middle(self) -> float:
         """Radius in the middle between the roller's inner end and the outside, mm."""
         return 0.5 * (self.inner + self.outer_radius)
 
@@ -223,6 +224,11 @@ class SpatialWall(RollerWall):
 
         low = np.full(len(theta), self.cam.floor)
         return bracketed_root(outside, low, np.full(len(theta), radius), ROOT * radius)
+
+    def contact_line(self, theta: Array) -> ContactLine:
+        """Return where the roller presses, from its end to the edge (see `RollerWall`)."""
+        low = np.full(len(theta), self.cam.inner)
+        return ContactLine.between(low, self.edge(theta), 1, partial(self.contact, theta))
 
     def grid(self, theta: Array, count: int) -> RollerContact:
         """Return the wall as a grid, from its foot to its edge.

@@ -72,7 +72,7 @@ def developed(wall: SpatialWall, theta: Array, count: int) -> Developed:
     Developed
     """
     cam = wall.cam
-    mean = cam.mean_radius
+    mean = cam.middle
     y, z, y1, z1 = _centers(cam, theta)
     along = mean - y1
     size = np.hypot(along, z1)

@@ -23,6 +23,15 @@ about the axis::
     F_psi = t.u,  F_x = (m.a')/cos(g),
     F_theta = m.u' - sin(g)*(a'.v + a.v') - cos(g)*(a'.m)*(a.v),  t = a x m
 
+Across the line of contact the wall leaves the roller with the *relative curvature* k. With D the
+distance from the roller, D = D_theta = 0 on the wall and D_theta = -F, so that for a fixed point of
+it D_theta,theta = grad(F).X_theta. Over the square of the distance of neighbouring lines of
+contact, spread/|X_x|, this is::
+
+    k = cos(g)*|F_psi|*|X_x|^2/(r*spread),  |X_x|^2 = 1/cos(g)^2 + (r*F_x/F_psi)^2
+
+For a disc cam it is 1/r + 1/rho, rho the radius of curvature of the profile.
+
 Source: derived here; for parallel axes 000 section 3.4.5. Depends on numpy only.
 """
 
@@ -140,9 +149,9 @@ class RollerContact(ShortRepr):
     def _across(self) -> tuple[Array, Array]:
         """The direction of u across the axis, and m . e; beyond 1 nothing is touched."""
         (a, _, _), (v, _) = self._a, self._v
-        across = self._u - _dot(self._u, a)[..., None] * a
+        across = self._u - dot(self._u, a)[..., None] * a
         size = np.linalg.norm(across, axis=-1)
-        return across / size[..., None], math.sin(self.half_angle) * _dot(a, v) / size
+        return across / size[..., None], math.sin(self.half_angle) * dot(a, v) / size
 
     @property
     def exists(self) -> Mask:
@@ -155,7 +164,7 @@ class RollerContact(ShortRepr):
         along, share = self._across
         with np.errstate(invalid="ignore"):
             beside = self.side * np.sqrt(1.0 - share**2)
-        return share[..., None] * along + beside[..., None] * _cross(along, self._a[0])
+        return share[..., None] * along + beside[..., None] * cross(along, self._a[0])
 
     @cached_property
     def points(self) -> Array:
@@ -172,8 +181,18 @@ class RollerContact(ShortRepr):
     def pressure(self) -> Array:
         """Pressure angle, (n, k), rad: between the normal and how the centre can move."""
         way = self.axis.way[:, None, :] + self.x[..., None] * self.axis.swing[:, None, :]
-        along = np.abs(_dot(self.normals, way))
-        return np.arctan2(np.linalg.norm(_cross(self.normals, way), axis=-1), along)
+        along = np.abs(dot(self.normals, way))
+        return np.arctan2(np.linalg.norm(cross(self.normals, way), axis=-1), along)
+
+    @cached_property
+    def tangents(self) -> Array:
+        """Unit tangents of the roller's circumference there, (n, k, 3): a x m."""
+        return cross(self._a[0], self.radial)
+
+    @cached_property
+    def _slopes(self) -> tuple[Array, Array]:
+        """F_psi and F_x."""
+        return dot(self.tangents, self._u), dot(self._a[1], self.radial) / math.cos(self.half_angle)
 
     @cached_property
     def spread(self) -> Array:
@@ -181,15 +200,36 @@ class RollerContact(ShortRepr):
         g, r = self.half_angle, self.radius
         cosine, sine = math.cos(g), math.sin(g)
         (a, a1, a2), (v, v1), m = self._a, self._v, self.radial
-        t = _cross(a, m)
+        by_psi, by_x = self._slopes
         u1 = cosine * v1 + (sine * r)[..., None] * a2
-        turned = _dot(a1, m)
-        by_psi = _dot(t, self._u)
-        by_x = turned / cosine
-        by_theta = _dot(m, u1) - sine * (_dot(a1, v) + _dot(a, v1)) - cosine * turned * _dot(a, v)
-        along = cosine * (_dot(a, v) - r * turned) + sine * _dot(m, v)
-        around = _dot(t, v) - r * by_theta / by_psi
+        turned = dot(a1, m)
+        by_theta = dot(m, u1) - sine * (dot(a1, v) + dot(a, v1)) - cosine * turned * dot(a, v)
+        along = cosine * (dot(a, v) - r * turned) + sine * dot(m, v)
+        around = dot(self.tangents, v) - r * by_theta / by_psi
         return self.side * (around / cosine + along * r * by_x / by_psi)
+
+    @cached_property
+    def _stretch(self) -> Array:
+        """Squares of the length of the line of contact, over that of x."""
+        by_psi, by_x = self._slopes
+        return math.cos(self.half_angle) ** -2 + (self.radius * by_x / by_psi) ** 2
+
+    def curvature(self, roller: Roller) -> Array:
+        """Return the relative curvature of wall and a roller across the line of contact.
+
+        Parameters
+        ----------
+        roller : Roller
+            The roller; narrower than what has made the wall by the clearance of a groove.
+
+        Returns
+        -------
+        (n, k) array, 1/mm
+        """
+        cosine, by_psi = math.cos(self.half_angle), np.abs(self._slopes[0])
+        own = cosine * by_psi * self._stretch / (self.radius * self.spread)
+        narrower = 1.0 / roller.radii(self.x) - 1.0 / self.radius
+        return own + narrower / (cosine * self._stretch)
 
 
 def touched(axis: RollerAxis, roller: Roller, x: Array, side: int) -> RollerContact:
@@ -210,10 +250,11 @@ def touched(axis: RollerAxis, roller: Roller, x: Array, side: int) -> RollerCont
     return RollerContact(axis=axis, x=x, radius=radius, half_angle=half_angle, side=side)
 
 
-def _dot(one: Array, other: Array) -> Array:
+def dot(one: Array, other: Array) -> Array:
+    """Return the scalar products of vectors (..., 3)."""
     return np.einsum("...i,...i->...", one, other)
 
 
-def _cross(one: Array, other: Array) -> Array:
-    """Return the products of vectors: `numpy.cross` takes ten times as long for few of them."""
+def cross(one: Array, other: Array) -> Array:
+    """Return the vector products of vectors (..., 3); `numpy.cross` is slow for few of them."""
     return one[..., _NEXT] * other[..., _LAST] - one[..., _LAST] * other[..., _NEXT]

@@ -24,7 +24,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Final
 
 import numpy as np
@@ -36,6 +36,7 @@ from gearcam.numeric.roots import bracketed_root
 from gearcam.spatial.envelope import RollerAxis, RollerContact, touched
 from gearcam.spatial.extremes import Box, OfPlaces, Spot, boxes_between, lowest
 from gearcam.spatial.guides import Turret, carried
+from gearcam.spatial.loaded import ContactLine
 from gearcam.spatial.walls import ROOT, RollerCam, RollerWall
 
 WORDS: Final = {-1: "upper", 1: "lower"}
@@ -299,6 +300,33 @@ class GloboidalWall(RollerWall):
 
         ends = np.full(len(theta), 0.0), np.full(len(theta), cam.distance)
         return bracketed_root(beyond, *ends, ROOT * cam.distance)
+
+    def _beyond_face(self, theta: Array, x: Array) -> Array:
+        """Return how far places on rollers are beyond the nearer face, mm, (n,)."""
+        return np.abs(self.contact(theta, x[:, None]).points[:, 0, 2]) - self.cam.half_length
+
+    def contact_line(self, theta: Array) -> ContactLine:
+        """Return where rollers press, from the tops of the ribs to their ends (see `RollerWall`).
+
+        A roller that passes a face presses up to this face only.
+        """
+        cam = self.cam
+        # beyond this angle all of a roller is beyond the faces
+        last = math.asin(cam.half_length / cam.top) + math.asin(min(1.0, cam.tool.radius / cam.top))
+        first = np.ceil((-last - cam.angle(theta)) / cam.pitch)
+        turns = np.arange(math.floor(2.0 * last / cam.pitch) + 1.0)
+        every = (theta[:, None] + TURN * (first[:, None] + turns)).ravel()
+        low, high = self.place(every, cam.top), np.full(len(every), cam.reach)
+
+        at_top, at_end = (self._beyond_face(every, one) > 0.0 for one in (low, high))
+        cut = np.flatnonzero(at_top != at_end)
+        face = bracketed_root(
+            partial(self._beyond_face, every[cut]), low[cut], high[cut], ROOT * cam.distance
+        )
+        low[cut] = np.where(at_top[cut], face, low[cut])
+        high[cut] = np.where(at_end[cut], face, high[cut])
+        low = np.where(at_top & at_end, high, low)
+        return ContactLine.between(low, high, len(turns), partial(self.contact, every))
 
     def grid(self, theta: Array, count: int, beyond: float = 0.0) -> RollerContact:
         """Return the wall as a grid, from the top of the rib to the floor.

@@ -16,13 +16,18 @@ from gearcam.base.numerals import formatted
 from gearcam.base.quantities import (
     ANGLE,
     COUNT,
+    INERTIA,
     LENGTH,
     REQUIRED,
     TEXT,
+    fixed,
     param,
     positive_length,
 )
-from gearcam.base.rules import Breach, below
+from gearcam.base.rules import Breach, below, exactly_one, needs
+from gearcam.mechanics.load import LoadSpec
+from gearcam.mechanics.mass import MassSpec
+from gearcam.spatial.friction import SpaceFrictionSpec
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,12 +99,101 @@ class TurretSpec(ShortRepr):
         """Angle between two rollers, rad."""
         return 2.0 * math.pi / self.stops
 
+    def without_friction(self, friction: SpaceFrictionSpec) -> list[str]:
+        """Return the coefficients that it needs and `friction` leaves out."""
+        needed = ("roller", "joint")
+        return [name for name in needed if not getattr(friction, name)]
+
+    def dragged(self, friction: SpaceFrictionSpec, radius: float) -> float:
+        """Return tangential over normal force at the contact of a roller of a `radius`, mm."""
+        return friction.rolling(radius)
+
     def problems(self) -> Iterator[Breach]:
         """Yield contradictions: field, index, message, what is allowed."""
         most = self.hub * math.sin(0.5 * self.pitch)
         if self.roller_radius >= most:
             rule = f"below {formatted(most)} mm, where they touch at the turret's body"
             yield "roller_radius", None, "neighbouring rollers overlap", rule
+
+
+@dataclass(frozen=True, kw_only=True)
+class TurretLoadSpec(LoadSpec):
+    """A torque on the turret, positive against its motion (see `LoadSpec`).
+
+    Parameters
+    ----------
+    force : float, N
+        It turns.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.TurretLoadSpec(torque=4000.0).on  # N mm
+    'turret'
+    """
+
+    on: str = param(TEXT, default="turret", choices=("turret",), doc="member that is loaded")
+    force: float | None = fixed(None)
+
+    rules = (exactly_one("torque", "formula", "table"), *LoadSpec.rules[1:])
+
+
+@dataclass(frozen=True, kw_only=True)
+class TurretMassSpec(MassSpec):
+    """The mass of the turret with all that turns with it.
+
+    Parameters
+    ----------
+    center : float, mm
+        It is on the axis.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.TurretMassSpec(inertia=0.02)
+    TurretMassSpec(inertia=0.02)
+    """
+
+    of: str = param(TEXT, default="turret", choices=("turret",), doc="member that has the mass")
+    inertia: float | None = param(
+        INERTIA,
+        default=None,
+        gt=0,
+        le=1e9,
+        example=0.02,
+        doc="moment of inertia about the axis of the turret",
+    )
+    center: float | None = fixed(None)
+
+    rules = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class TurretFrictionSpec(SpaceFrictionSpec):
+    """Coefficients of friction of a globoidal cam, 0 where left out, and sizes of bearings.
+
+    Parameters
+    ----------
+    guide, guide_length, guide_at, guide_distance
+        A turret turns.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.TurretFrictionSpec(joint=0.1, journal_radius=(12.0, 4.0))
+    TurretFrictionSpec(joint=0.1, journal_radius=(12, 4))
+    """
+
+    guide: float = fixed(0.0)
+    guide_length: float | None = fixed(None)
+    guide_at: float | None = fixed(None)
+    guide_distance: float | None = fixed(None)
+
+    rules = (
+        needs("joint", "journal_radius"),
+        needs("roller", "journal_radius"),
+        needs("journal_radius", "joint", "roller", one=True),
+    )
 
 
 @dataclass(frozen=True, kw_only=True)

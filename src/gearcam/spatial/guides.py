@@ -7,7 +7,7 @@ in its frame the axis is turned by -theta (`carried`).
 Frame: the cam's axis is z. The roller of `Straight` and `SwingArm` has its axis parallel to x and
 meets the cam at the azimuth 0; lift is along +z.
 
-Depends on envelope and poses; numpy only.
+Depends on envelope, supports and poses; numpy only.
 """
 
 from __future__ import annotations
@@ -15,17 +15,48 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.numeric.arrays import Array
+from gearcam.mechanics.supports import Support
+from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.pose import SpacePose
 from gearcam.spatial.envelope import RollerAxis
+from gearcam.spatial.friction import SpaceFrictionSpec
+from gearcam.spatial.supports import OverhungGuide, ThrustPivot
 
 
 class RollerGuide(ABC, ShortRepr):
-    """What carries a roller."""
+    """What carries a roller, in a plane: across the cam, y and z, or x and z."""
+
+    angular: ClassVar[bool]
+    """Whether its lift is an angle."""
+
+    mirrored: ClassVar[bool]
+    """Whether the plane is seen in a mirror where the cam turns clockwise."""
+
+    @staticmethod
+    @abstractmethod
+    def in_plane(vectors: Array) -> Plane:
+        """Return vectors (..., 3) in the plane of the motion, complex."""
+
+    @abstractmethod
+    def support(self, friction: SpaceFrictionSpec) -> Support:
+        """Return what holds it, with the sizes of a guide (see `gearcam.spatial.supports`)."""
+
+    def mass_point(self, lift: Array, distance: float) -> Plane:  # noqa: ARG002
+        """Return the centre of mass in the plane of the motion: on the guide, or on the pivot.
+
+        Parameters
+        ----------
+        lift : (n,) array, mm or rad
+            The lift.
+        distance : float, mm
+            Of an arm from its pivot, towards the roller.
+        """
+        return np.zeros(len(lift), dtype=np.complex128)
 
     @abstractmethod
     def placed(self, lift: Array) -> tuple[Array, Array]:
@@ -55,6 +86,13 @@ class RollerGuide(ABC, ShortRepr):
 
 class AcrossGuide(RollerGuide):
     """A guide that keeps the roller's axis parallel to x: it moves in planes across the cam."""
+
+    mirrored = True
+
+    @staticmethod
+    def in_plane(vectors: Array) -> Plane:
+        """Return y + i*z (see `RollerGuide.in_plane`)."""
+        return vectors[..., 1] + 1j * vectors[..., 2]
 
     @abstractmethod
     def way(self, lift: Array, point: tuple[Array, Array], radius: Array, side: int) -> Array:
@@ -89,6 +127,18 @@ class Straight(AcrossGuide):
     """
 
     height: float
+
+    angular = False
+
+    def support(self, friction: SpaceFrictionSpec) -> Support:
+        """Return the guide beside the cam (see `RollerGuide.support`)."""
+        return OverhungGuide(
+            direction=1j,
+            middle=0j,
+            distance=friction.guide_distance or 0.0,
+            height=friction.guide_at or 0.0,
+            length=friction.guide_length or 0.0,
+        )
 
     def placed(self, lift: Array) -> tuple[Array, Array]:
         """Return the axis of the roller (see `RollerGuide.placed`)."""
@@ -130,10 +180,25 @@ class SwingArm(AcrossGuide):
     start: float
     height: float
 
+    angular = True
+
     @property
     def pivot(self) -> float:
         """Height of the pivot, mm."""
         return self.height - self.length * math.sin(self.start)
+
+    def support(self, friction: SpaceFrictionSpec) -> Support:  # noqa: ARG002
+        """Return the pivot, whose place along the roller is not known (see `RollerGuide`)."""
+        return ThrustPivot(at=self._pivot, spin=1.0, along=0, central=False)
+
+    @property
+    def _pivot(self) -> complex:
+        return complex(-self.distance, self.pivot)
+
+    def mass_point(self, lift: Array, distance: float) -> Plane:
+        """Return a point of the arm (see `RollerGuide.mass_point`)."""
+        arm: Plane = np.exp(1j * (self.start + lift))
+        return self._pivot + distance * arm
 
     def placed(self, lift: Array) -> tuple[Array, Array]:
         """Return the axis of the roller (see `RollerGuide.placed`)."""
@@ -178,6 +243,21 @@ class Turret(RollerGuide):
 
     distance: float
     start: float
+
+    angular, mirrored = True, False
+
+    @staticmethod
+    def in_plane(vectors: Array) -> Plane:
+        """Return x + i*z (see `RollerGuide.in_plane`)."""
+        return vectors[..., 0] + 1j * vectors[..., 2]
+
+    def support(self, friction: SpaceFrictionSpec) -> Support:  # noqa: ARG002
+        """Return the bearing of the turret (see `RollerGuide.support`)."""
+        return ThrustPivot(at=complex(self.distance), spin=-1.0, along=1, central=True)
+
+    def mass_point(self, lift: Array, distance: float) -> Plane:  # noqa: ARG002
+        """Return its axis (see `RollerGuide.mass_point`)."""
+        return np.full(len(lift), complex(self.distance))
 
     def placed(self, lift: Array) -> tuple[Array, Array]:
         """Return the axis of the roller (see `RollerGuide.placed`)."""

@@ -24,6 +24,7 @@ from gearcam.base.quantities import (
     positive_length,
 )
 from gearcam.base.rules import Breach, below, needed_with, only_with
+from gearcam.spatial.friction import SpaceFrictionSpec
 
 Apex = Literal["apex"]
 """In place of an angle: the tip of the cone is on the cam's axis."""
@@ -96,6 +97,15 @@ class SpatialFollower(ShortRepr):
     def oscillating(self) -> bool:
         """Whether it swings about a pivot; its lift is an angle then."""
         return self.motion == "oscillating"
+
+    def without_friction(self, friction: SpaceFrictionSpec) -> list[str]:
+        """Return the coefficients that it needs and `friction` leaves out."""
+        needed = ("roller", "joint") if self.oscillating else ("roller", "guide", "joint")
+        return [name for name in needed if not getattr(friction, name)]
+
+    def dragged(self, friction: SpaceFrictionSpec, radius: float) -> float:
+        """Return tangential over normal force at the contact of a roller of a `radius`, mm."""
+        return friction.rolling(radius)
 
     @property
     def named(self) -> str:

@@ -14,7 +14,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -24,6 +24,10 @@ from gearcam.numeric.arrays import Array
 from gearcam.numeric.roots import bracketed_root
 from gearcam.spatial.envelope import Roller, RollerAxis, RollerContact, touched
 from gearcam.spatial.extremes import Spot
+from gearcam.spatial.loaded import ContactLine, RollerFollower, RollerMotion, RollerTouch
+
+if TYPE_CHECKING:
+    from gearcam.spatial.guides import RollerGuide
 
 ROOT: Final = 1e-15
 """Width of the bracket of a place or a radius, over the size of the cam."""
@@ -74,6 +78,41 @@ class RollerCam(ABC, ShortRepr):
         side : {1, -1}
             The wall.
         """
+
+    if TYPE_CHECKING:  # a field of some forms, which cannot be abstract
+
+        @property
+        def guide(self) -> RollerGuide:
+            """What carries the roller."""
+            ...
+
+    @property
+    @abstractmethod
+    def middle(self) -> float:
+        """The middle of the part of a roller that presses, mm along its axis."""
+
+    @property
+    def motions(self) -> tuple[RollerMotion]:
+        """The motion of its follower."""
+        guide = self.guide
+        follower = RollerFollower(guide=guide, radius=self.roller.radius_at(self.middle))
+        clockwise = self.clockwise and guide.mirrored
+        return (RollerMotion(program=self.program, follower=follower, clockwise=clockwise),)
+
+    @cached_property
+    def touches(self) -> tuple[RollerTouch, ...]:
+        """Where it can press on its follower: on each wall."""
+        return tuple(
+            RollerTouch(
+                key=wall.key,
+                guide=self.guide,
+                roller=self.roller,
+                middle=self.middle,
+                line=wall.contact_line,
+                above=wall.side > 0,
+            )
+            for wall in self.walls
+        )
 
     @property
     def undercut(self) -> bool:
@@ -142,6 +181,10 @@ class RollerWall(ABC, ShortRepr):
         measure : callable
             Gives values, (n, k), of a contact.
         """
+
+    @abstractmethod
+    def contact_line(self, theta: Array) -> ContactLine:
+        """Return where rollers can press on it at cam angles (n,), rad."""
 
     def contact(self, theta: Array, x: Array) -> RollerContact:
         """Return where the tool touches it (see `RollerCam.contact`)."""

@@ -26,7 +26,6 @@ from gearcam.designs.design import Design, document_of
 from gearcam.designs.faults import Fault, show
 from gearcam.designs.kind import Examined
 from gearcam.designs.table import table_of
-from gearcam.designs.validate import placed_faults
 from gearcam.kinds.cam.forms.base import FORMS, VARIANTS
 from gearcam.kinds.cam.motion import MOTION, circumstances
 from gearcam.kinds.cam.tables import (
@@ -39,6 +38,7 @@ from gearcam.kinds.cam.tables import (
     FollowSpec,
     PrecisionSpec,
 )
+from gearcam.kinds.follower_tables import load_faults
 from gearcam.kinds.shared import AccuracySpec, ForcesSpec, GoalSpec
 from gearcam.mechanics.drive import DriveSpec
 from gearcam.mechanics.friction import FrictionSpec
@@ -184,9 +184,8 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     output, follower = document.get("output"), document.get("follower")
     yield from _follow_faults(output, document.get("follow"))
     yield from _tool_faults(output, follower)
-    yield from _weightless(document)
     if "follower" in found.parts:
-        yield from _load_faults(found, document)
+        yield from load_faults(found, document, oscillating=found.parts["follower"].oscillating)
     asked = unknowns(document)
     yield from _unsolvable(document, asked)
     if {"cam", "follower"} <= found.parts.keys():
@@ -263,38 +262,12 @@ def _unknown_goals(goal: Any) -> Iterator[Fault]:
             found.append(name)
 
 
-def _load_faults(found: Examined, document: Mapping[str, Any]) -> Iterator[Fault]:
-    """Yield loads, springs and masses that do not suit how the follower moves."""
-    follower = found.parts["follower"]
-    for title in ("load", "spring", "mass"):
-        known = VARIANTS.table("load", VARIANTS.meant(document)) if title == "load" else None
-        for number, one in enumerate(found.parts.get(title, ())):
-            table = known or table_of(title, type(one))
-            breaches = one.allowed_on(oscillating=follower.oscillating)
-            raw = document[title][number]
-            yield from placed_faults(breaches, table, raw, (title, number))
-    solved = [one.solved for one in found.parts.get("spring", ())]
-    if sum(solved) > 1:
-        second = [number for number, one in enumerate(solved) if one][1]
-        message = 'a second spring is solved too: "solve" stands in one of them'
-        yield Fault(("spring", second), message, allowed="numbers in all springs but one")
-
-
 def _follow_faults(output: Any, follow: Any) -> Iterator[Fault]:
     asked = output.get("studies") if isinstance(output, Mapping) else None
     given = isinstance(follow, Mapping) and "file" in follow
     if isinstance(asked, list) and "follow" in asked and not given:
         message = 'is missing: output.studies lists "follow", which needs a profile'
         yield Fault(("follow", "file"), message, allowed="a DXF or CSV file of a closed profile")
-
-
-def _weightless(document: Mapping[str, Any]) -> Iterator[Fault]:
-    """Yield the fault of gravity where there is no mass on which it acts."""
-    gravity = document.get("gravity")
-    if isinstance(gravity, Mapping) and "direction_deg" in gravity and not document.get("mass"):
-        value = gravity["direction_deg"]
-        message = f"{show(value)}: the follower has no mass on which gravity acts"
-        yield Fault(("gravity", "direction_deg"), message, value, "with a table [[mass]]")
 
 
 def _tool_faults(output: Any, follower: Any) -> Iterator[Fault]:

@@ -27,7 +27,7 @@ from gearcam.base.quantities import (
 from gearcam.base.registry import deferred
 from gearcam.base.rules import Breach, needs
 from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, pose_param, studies_param
-from gearcam.kinds.shared import ACCURACY
+from gearcam.kinds.shared import ACCURACY, forces_study
 from gearcam.parts.blank import OPENING_RULES, WheelBlank, least_metal, widening_rules
 from gearcam.results.kind import Study, studies_of
 
@@ -51,15 +51,7 @@ STUDIES: Final = studies_of(
         demand=deferred(f"{_HERE}.given_profile:demand"),
         many=False,
     ),
-    Study(
-        name="forces",
-        key="forces",
-        doc="Compute forces, torque, efficiency and contact pressure; write DIR/NAME/forces.csv.",
-        done="computed",
-        table="forces",
-        compute=deferred(f"{_HERE}.forces:study_forces"),
-        demand=deferred("gearcam.kinds.under_load:demand"),
-    ),
+    forces_study(f"{_HERE}.forces:study_forces"),
     Study(
         name="precision",
         key="precision",

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.brought import group_of
 from gearcam.base.registry import DeferredMapping, deferred
@@ -13,12 +13,33 @@ from gearcam.designs.faults import Fault
 from gearcam.designs.nodes import Choice
 from gearcam.designs.outputs import MESHES, files_param, studies_param
 from gearcam.designs.table import table_of
-from gearcam.kinds.shared import ACCURACY, AccuracySpec, GoalSpec, GriddedOutput
+from gearcam.kinds.follower_tables import load_faults
+from gearcam.kinds.shared import (
+    ACCURACY,
+    AccuracySpec,
+    ForcesSpec,
+    GoalSpec,
+    GriddedOutput,
+    forces_study,
+)
 from gearcam.laws.motion import MOTION_LAWS
 from gearcam.mechanics.drive import DriveSpec
+from gearcam.mechanics.load import FORCES
+from gearcam.mechanics.mass import GravitySpec
+from gearcam.mechanics.material import MaterialSpec
 from gearcam.results.kind import Kind, studies_of
-from gearcam.spatial.globoidal_spec import GloboidalSpec, IndexSpec, TurretSpec
+from gearcam.spatial.globoidal_spec import (
+    GloboidalSpec,
+    IndexSpec,
+    TurretFrictionSpec,
+    TurretLoadSpec,
+    TurretMassSpec,
+    TurretSpec,
+)
 from gearcam.spatial.spec import CylinderBlank
+
+if TYPE_CHECKING:
+    from gearcam.designs.kind import Examined
 
 NAME: Final = "globoidal-cam"
 """Name of the kind, as in a file."""
@@ -41,6 +62,7 @@ _HERE: Final = "gearcam.kinds.globoidal_cam"
 
 STUDIES: Final = studies_of(
     NAME,
+    forces_study("gearcam.kinds.gridded_forces:study_forces"),
     ACCURACY,
 )
 """The studies by name."""
@@ -104,6 +126,18 @@ class GloboidalCamDesign(Design):
         Speed of the cam.
     blank : CylinderBlank
         Bore and density.
+    load : sequence of TurretLoadSpec
+        What the turret works against.
+    mass : sequence of TurretMassSpec
+        Masses that turn with it.
+    gravity : GravitySpec
+        Direction of gravity.
+    friction : TurretFrictionSpec
+        Coefficients of friction, bearings.
+    material : MaterialSpec
+        Materials of cam and rollers.
+    forces : ForcesSpec
+        Settings of the study of forces.
     output : GloboidalOutput
         Files and how fine they are.
     accuracy : AccuracySpec
@@ -123,14 +157,28 @@ class GloboidalCamDesign(Design):
 
     kind = NAME
 
+    spring = ()
+    """No spring acts on a turret, which does not come back."""
+
     index: IndexSpec
     turret: TurretSpec
     cam: GloboidalSpec
     drive: DriveSpec = field(default_factory=DriveSpec)
     blank: CylinderBlank = field(default_factory=CylinderBlank)
+    load: tuple[TurretLoadSpec, ...] = ()
+    mass: tuple[TurretMassSpec, ...] = ()
+    gravity: GravitySpec = field(default_factory=GravitySpec)
+    friction: TurretFrictionSpec = field(default_factory=TurretFrictionSpec)
+    material: MaterialSpec = field(default_factory=MaterialSpec)
+    forces: ForcesSpec = field(default_factory=ForcesSpec)
     output: GloboidalOutput = field(default_factory=GloboidalOutput)
     accuracy: AccuracySpec = field(default_factory=AccuracySpec)
     goal: GoalSpec = field(default_factory=GoalSpec)
+
+
+def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
+    """Yield contradictions between the tables of a `document` of which parts are `found`."""
+    yield from load_faults(found, document, oscillating=True)
 
 
 KIND: Final = Kind(
@@ -141,8 +189,13 @@ KIND: Final = Kind(
     nodes={"index": INDEX},
     required=("index", "turret", "cam"),
     later=not_made,
-    check_modules=("gearcam.spatial.globoidal_checks", "gearcam.laws.row_checks"),
-    check_groups=("globoidal cams", "rows of tables", "solids of globoidal cams"),
+    problems=problems,
+    check_modules=(
+        "gearcam.spatial.globoidal_checks",
+        "gearcam.laws.row_checks",
+        "gearcam.mechanics.force_checks",
+    ),
+    check_groups=("globoidal cams", "rows of tables", "solids of globoidal cams", FORCES),
     example={
         "index": {"law": "modified-sine", "angle_deg": 120},
         "turret": {"stops": 8, "roller_radius_mm": 6, "roller_length_mm": 11, "reach_mm": 47},

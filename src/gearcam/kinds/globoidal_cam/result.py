@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from gearcam.base.adjustments import Changes
     from gearcam.numeric.arrays import Array
     from gearcam.numeric.pose import SpacePose
+    from gearcam.spatial.globoidal_spec import TurretSpec
 
 TURRET: Final = "turret"
 """Name of its solid."""
@@ -68,6 +69,7 @@ class GloboidalCamResult(GriddedCam):
     design: GloboidalCamDesign
     solid_files = frozenset({*MESHES, "report"})
     most_carved = 120
+    roller_key = "turret.roller_radius_mm"
     most_facets = 2_000_000
 
     @cached_property
@@ -83,6 +85,11 @@ class GloboidalCamResult(GriddedCam):
         program, design = self.program, self.design
         with self.stage("cam"):
             return make_globoidal(program, design.turret, design.cam, design.blank.bore)
+
+    @property
+    def follower_spec(self) -> TurretSpec:
+        """The table of the turret."""
+        return self.design.turret
 
     @cached_property
     def checked_without_hints(self) -> tuple[Finding, ...]:

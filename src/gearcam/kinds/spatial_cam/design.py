@@ -2,24 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.brought import group_of
 from gearcam.base.display import ShortRepr
 from gearcam.base.quantities import COUNT, LENGTH, param
 from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.designs.design import Design
+from gearcam.designs.faults import Fault
 from gearcam.designs.outputs import MESHES, files_param, studies_param
 from gearcam.kinds.cam.public import MOTION, circumstances
-from gearcam.kinds.shared import ACCURACY, AccuracySpec, GoalSpec, GriddedOutput
+from gearcam.kinds.follower_tables import load_faults
+from gearcam.kinds.shared import (
+    ACCURACY,
+    AccuracySpec,
+    ForcesSpec,
+    GoalSpec,
+    GriddedOutput,
+    forces_study,
+)
 from gearcam.mechanics.drive import DriveSpec
+from gearcam.mechanics.load import FORCES, LoadSpec
+from gearcam.mechanics.mass import GravitySpec, MassSpec
+from gearcam.mechanics.material import MaterialSpec
+from gearcam.mechanics.spring import SpringSpec
 from gearcam.results.kind import Kind, Study, studies_of
+from gearcam.spatial.friction import SpaceFrictionSpec
 from gearcam.spatial.spec import CylinderBlank, CylinderSpec, SpatialFollower
 from gearcam.spatial.tool import MillSpec
 
 if TYPE_CHECKING:
+    from gearcam.designs.kind import Examined
     from gearcam.kinds.cam.public import Motion
 
 NAME: Final = "spatial-cam"
@@ -38,6 +53,7 @@ STUDIES: Final = studies_of(
         table="developed",
         compute=deferred(f"{_HERE}.studies:study_developed"),
     ),
+    forces_study("gearcam.kinds.gridded_forces:study_forces"),
     ACCURACY,
 )
 """The studies by name."""
@@ -104,6 +120,20 @@ class SpatialCamDesign(Design):
         Speed of the cam.
     blank : CylinderBlank
         Bore and density.
+    load : sequence of LoadSpec
+        What the follower works against.
+    spring : sequence of SpringSpec
+        Springs that press it onto the cam.
+    mass : sequence of MassSpec
+        Its masses.
+    gravity : GravitySpec
+        Direction of gravity.
+    friction : SpaceFrictionSpec
+        Coefficients of friction, bearings.
+    material : MaterialSpec
+        Materials of cam and roller.
+    forces : ForcesSpec
+        Settings of the study of forces.
     tool : MillSpec
         The end mill of its tool path.
     output : SpatialOutput
@@ -132,6 +162,13 @@ class SpatialCamDesign(Design):
     cam: CylinderSpec
     drive: DriveSpec = field(default_factory=DriveSpec)
     blank: CylinderBlank = field(default_factory=CylinderBlank)
+    load: tuple[LoadSpec, ...] = ()
+    spring: tuple[SpringSpec, ...] = ()
+    mass: tuple[MassSpec, ...] = ()
+    gravity: GravitySpec = field(default_factory=GravitySpec)
+    friction: SpaceFrictionSpec = field(default_factory=SpaceFrictionSpec)
+    material: MaterialSpec = field(default_factory=MaterialSpec)
+    forces: ForcesSpec = field(default_factory=ForcesSpec)
     tool: MillSpec = field(default_factory=MillSpec)
     output: SpatialOutput = field(default_factory=SpatialOutput)
     developed: DevelopedSpec = field(default_factory=DevelopedSpec)
@@ -143,6 +180,16 @@ class SpatialCamDesign(Design):
             object.__setattr__(self, "motion", tuple(self.motion))
 
 
+def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
+    """Yield contradictions between the tables of a `document` of which parts are `found`."""
+    if "follower" in found.parts:
+        yield from load_faults(found, document, oscillating=found.parts["follower"].oscillating)
+    if "cam" in found.parts and found.parts["cam"].walls == "upper" and document.get("spring"):
+        message = "does not act on a roller below its wall: springs press against a rise"
+        allowed = "a table [[load]] with a force below 0, which presses it upwards"
+        yield Fault(("spring", 0), message, allowed=allowed)
+
+
 KIND: Final = Kind(
     name=NAME,
     doc="a cam in space with its roller",
@@ -151,8 +198,13 @@ KIND: Final = Kind(
     nodes={"motion": MOTION},
     circumstances=circumstances,
     required=("motion", "follower", "cam"),
-    check_modules=("gearcam.spatial.checks", "gearcam.laws.row_checks"),
-    check_groups=("cams in space", "rows of tables", "solids of cams in space"),
+    problems=problems,
+    check_modules=(
+        "gearcam.spatial.checks",
+        "gearcam.laws.row_checks",
+        "gearcam.mechanics.force_checks",
+    ),
+    check_groups=("cams in space", "rows of tables", "solids of cams in space", FORCES),
     example={
         "motion": [
             {"type": "rise", "angle_deg": 150, "law": "cycloidal", "lift_mm": 25},

@@ -11,9 +11,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.base.errors import beyond_limit
 from gearcam.base.findings import Finding
-from gearcam.base.numerals import formatted
 from gearcam.designs.outputs import MESHES
 from gearcam.kinds.cam.public import lift_program
 from gearcam.kinds.gridded import ROUND, SAGITTA, STEM, GriddedCam
@@ -25,7 +23,7 @@ from gearcam.numeric.columns import Columns
 from gearcam.numeric.mesh import Mesh
 from gearcam.parts.solids import carved
 from gearcam.results.table_rows import TableRows
-from gearcam.spatial.cam import SpatialCam, SpatialWall
+from gearcam.spatial.cam import SpatialCam
 from gearcam.spatial.carving import roller_corners, scallop
 from gearcam.spatial.make import make_cylinder
 from gearcam.spatial.surface import (
@@ -42,6 +40,7 @@ if TYPE_CHECKING:
     from gearcam.parts.bands import BandedBody
     from gearcam.spatial.milling import RotaryPath
     from gearcam.spatial.sizing import SolvedDiameter
+    from gearcam.spatial.spec import SpatialFollower
 
 ROLLER: Final = "roller"
 """Name of its solid; of two, those at a rib, the beginning of their names."""
@@ -73,6 +72,7 @@ class SpatialCamResult(GriddedCam):
     design: SpatialCamDesign
     solid_files = frozenset({*MESHES, "step", "report"})
     most_carved = 240
+    roller_key = "follower.roller_radius_mm"
     most_facets = 4_000_000
 
     @cached_property
@@ -114,6 +114,11 @@ class SpatialCamResult(GriddedCam):
         program, design = self.program, self.solved
         with self.stage("cam"), self.rows.named():
             return make_cylinder(program, design.follower, design.cam, design.blank.bore)
+
+    @property
+    def follower_spec(self) -> SpatialFollower:
+        """The table of the follower."""
+        return self.design.follower
 
     @property
     def blank(self) -> Cylinder:
@@ -176,7 +181,7 @@ class SpatialCamResult(GriddedCam):
     def places(self) -> dict[str, float]:
         """Places along the roller, mm from the axis, by their names in columns."""
         cam = self.cam
-        return {"inner": cam.inner, "mean": cam.mean_radius, "outer": cam.outer_radius}
+        return {"inner": cam.inner, "mean": cam.middle, "outer": cam.outer_radius}
 
     def pressure_at(self, theta: Array, x: float) -> Array:
         """Return the larger pressure angle of both walls (see `GriddedCam.pressure_at`)."""
@@ -219,7 +224,7 @@ class SpatialCamResult(GriddedCam):
         from gearcam.parts.cam_bands import cam_bands
 
         for wall in self.cam.walls:
-            _demand_whole(wall)
+            self.demand_whole(wall)
         coarse, fine = (self.mesh_of(*size).volume for size in _WITNESSES)
         error = (fine - coarse) / 3.0
         with self.stage("bands"):
@@ -238,7 +243,7 @@ class SpatialCamResult(GriddedCam):
 
         cam, design = self.cam, self.design
         for wall in cam.walls:
-            _demand_whole(wall)
+            self.demand_whole(wall)
         with self.stage("tool path"):
             return rotary_path(cam, design.tool, design.output.path_tolerance)
 
@@ -276,19 +281,3 @@ class SpatialCamResult(GriddedCam):
             return super().main_errors
         walls, volume = super().main_errors
         return walls, ("walls of the STEP solid, between its points", ["step_mm"]), volume
-
-
-def _demand_whole(wall: SpatialWall) -> None:
-    """Refuse a wall that the roller cuts away at another angle."""
-    if not wall.undercut:
-        return
-    most = wall.allowed_radius
-    at = formatted(math.degrees(wall.spread.theta), 5)
-    raise beyond_limit(
-        f"the {wall.key} wall is undercut at {at} deg, and has no whole surface",
-        "follower.roller_radius_mm",
-        wall.cam.roller.radius,
-        most,
-        "the limit is the largest roller without undercut",
-        near=most,
-    )

@@ -141,7 +141,7 @@ def _pressure(result: SpatialCamResult) -> Tree:
         "max": largest("largest pressure angle"),
         "rise_max": largest("largest pressure angle, rise", kind="rise"),
         "return_max": largest("largest pressure angle, return", kind="return"),
-        "at_mean_radius": largest("largest pressure angle at the mean radius", cam.mean_radius),
+        "at_mean_radius": largest("largest pressure angle at the mean radius", cam.middle),
     }
 
 

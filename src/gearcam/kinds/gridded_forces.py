@@ -1,0 +1,74 @@
+"""The study of forces of cams in space: what their kinds add to that of all cams."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gearcam.kinds.follower_forces import MoreOfForces, forces_of
+from gearcam.mechanics.hertz import line_pressure
+from gearcam.pictures.charts import Chart, Line
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from gearcam.kinds.gridded import GriddedCam
+    from gearcam.mechanics.force_checks import Loaded
+    from gearcam.results.study import Progress, StudyResult
+
+
+def study_forces(result: GriddedCam, progress: Progress) -> StudyResult:
+    """Return the study of the forces of a cam in space (see `gearcam.spatial.loaded`).
+
+    Parameters
+    ----------
+    result : GriddedCam
+        The cam.
+    progress : Progress
+        Called with what is computed, the number done and their total.
+
+    Returns
+    -------
+    StudyResult
+
+    Raises
+    ------
+    InfeasibleError
+        If the cam is impossible, a wall is undercut, or no stiffness keeps the follower on the cam.
+    """
+    more = MoreOfForces(findings=tuple, columns=_columns, charts=partial(_charts, result))
+    return forces_of(result, progress, more)
+
+
+def _columns(loaded: Loaded) -> dict[str, Any]:
+    """Return the line load where the pressure is largest."""
+    return {"line_load_n_mm": loaded.statics.force / loaded.statics.width}
+
+
+def _charts(result: GriddedCam, loaded: Loaded, _: Mapping[str, Any]) -> dict[str, Chart]:
+    """Return line load and pressure along the rollers, where the normal force is largest."""
+    statics = loaded.statics
+    if np.isnan(statics.force).all():
+        return {}
+    top = int(np.nanargmax(statics.force))
+    touch = result.touches[int(statics.carrying[top])]
+    places, loads, curvature = (one[0] for one in touch.pressed(loaded.x[top : top + 1]))
+    loads = statics.force[top] * loads
+    pressure = line_pressure(loads, curvature, result.design.material)
+    rollers = np.split(np.arange(len(places)), np.flatnonzero(np.diff(places) <= 0.0) + 1)
+    rollers = [one for one in rollers if loads[one].any()]
+    where = f"along the rollers {loaded.at(top)}, of the largest normal force"
+
+    def chart(title: str, axis: str, values: Any) -> Chart:
+        lines = tuple(
+            Line(label=f"roller {number}", x=places[one], y=values[one])
+            for number, one in enumerate(rollers, start=1)
+        )
+        return Chart(title=f"{title} {where}", x="place along the roller, mm", y=axis, lines=lines)
+
+    return {
+        "line_load": chart("Line load", "line load, N/mm", loads),
+        "roller_pressure": chart("Contact pressure", "contact pressure, MPa", pressure),
+    }

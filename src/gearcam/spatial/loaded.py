@@ -1,0 +1,287 @@
+"""A cam in space under load: how the line of contact carries the force, and what it exerts.
+
+A roller and its wall touch along a line, its *line of contact*. The follower has one freedom, its
+lift. Where the wall goes with the unit normal n, a small lift ds lets the roller approach it by
+``c*ds``, c the component of its motion along -n. So of perfect, rigid parts whose surfaces yield in
+proportion to the load at each place, the *line load*, N/mm, is in proportion to c, and the *normal
+force* N is its sum. Several rollers of a turret share N by the same rule. Parts that are not
+perfect share it less evenly.
+
+On the follower acts, at each place, the line load along -n with a share of it along the
+circumference of the roller, from the friction of its pin. The cam's torque is the moment of this
+force about its axis, all work per unit of the cam angle as for plane cams
+(`gearcam.mechanics.statics`).
+
+The pressure is that of two cylinders with the relative curvature of the line of contact
+(`RollerContact.curvature`), at the place where it is largest.
+
+Left out: the couple of a line load on the pin of the roller, and slip along the roller, which
+rolls at one speed where the cam is faster outside.
+
+Refused by the kinds: walls that are undercut. Depends on walls and mechanics; numpy only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar, Final, NamedTuple
+
+import numpy as np
+
+from gearcam.base.display import ShortRepr
+from gearcam.laws.program import Program
+from gearcam.mechanics.follower_loads import DrivenMotion
+from gearcam.mechanics.friction import FrictionSpec
+from gearcam.mechanics.statics import Touch
+from gearcam.mechanics.supports import Push, Support
+from gearcam.numeric.arrays import Array, Plane
+from gearcam.spatial.envelope import Roller, RollerContact, cross, dot
+from gearcam.spatial.friction import SpaceFrictionSpec
+from gearcam.spatial.guides import RollerGuide
+from gearcam.spatial.supports import SpacePush
+
+
+@dataclass(frozen=True, kw_only=True)
+class RollerFollower(ShortRepr):
+    """The follower of a cam in space, as far as loads depend on it.
+
+    Parameters
+    ----------
+    guide : RollerGuide
+        What carries its rollers.
+    radius : float, mm
+        Of a roller, in the middle of what presses.
+    """
+
+    guide: RollerGuide
+    radius: float
+
+    start: ClassVar[float] = 0.0
+    """Positions are lifts."""
+
+    @property
+    def angular(self) -> bool:
+        """Whether lifts are angles."""
+        return self.guide.angular
+
+    @property
+    def load_unit(self) -> tuple[float, str, str]:
+        """Factor from loads, N or N mm, to their unit in output, that unit, and its suffix."""
+        return (1e-3, "N m", "nm") if self.angular else (1.0, "N", "n")
+
+    @property
+    def bend(self) -> float:
+        """Curvature of its end, 1/mm."""
+        return 1.0 / self.radius
+
+    def held(self, friction: SpaceFrictionSpec, highest: float) -> Support:  # noqa: ARG002
+        """Return what holds it; it does not depend on the `highest` lift."""
+        return self.guide.support(friction)
+
+    def mass_point(self, p: Array, distance: float) -> Plane:
+        """Return a point in the plane of its motion at lifts p, by its distance from the pivot."""
+        return self.guide.mass_point(p, distance)
+
+
+@dataclass(frozen=True, kw_only=True)
+class RollerMotion(ShortRepr):
+    """The motion of a follower of a cam in space.
+
+    Parameters
+    ----------
+    program : Program
+        Its lift.
+    follower : RollerFollower
+        The follower.
+    clockwise : bool
+        Whether the plane of the motion is seen in a mirror.
+    """
+
+    program: Program
+    follower: RollerFollower
+    clockwise: bool
+
+    @property
+    def hand(self) -> float:
+        """What is multiplied with quantities that change their sign in a mirror."""
+        return -1.0 if self.clockwise else 1.0
+
+
+_CELLS: Final = 8
+"""Pairs of intervals along a line of contact; load and curvature hardly bend along it."""
+
+_PLACES: Final = np.linspace(0.0, 1.0, 2 * _CELLS + 1)
+"""Even places along it, both ends among them."""
+
+_SIMPSON: Final = np.array([1.0, *([4.0, 2.0] * _CELLS)[:-1], 1.0]) / (6.0 * _CELLS)
+"""Simpson's weights of the places."""
+
+
+class ContactLine(NamedTuple):
+    """Places along the lines of contact of one or several rollers, k of them at n cam angles.
+
+    Attributes
+    ----------
+    contact : RollerContact
+        The same places, those of each roller in a row: n by r rows.
+    weights : (n, k) array, mm
+        Length along the roller that each place stands for; 0 where it is not on the cam.
+    """
+
+    contact: RollerContact
+    weights: Array
+
+    @classmethod
+    def between(
+        cls, low: Array, high: Array, rollers: int, contact: Callable[[Array], RollerContact]
+    ) -> ContactLine:
+        """Return the lines between two places on each roller, for Simpson's rule.
+
+        Parameters
+        ----------
+        low, high : (n*rollers,) arrays, mm
+            The places; the same where nothing is on the cam.
+        rollers : int
+            Number of rollers at each cam angle.
+        contact : callable
+            ``contact(x)`` returns the contact at places (n*rollers, k).
+        """
+        length = (high - low)[:, None]
+        weights = (length * _SIMPSON).reshape(len(low) // rollers, -1)
+        return cls(contact(low[:, None] + length * _PLACES), weights)
+
+    def of(self, values: Array) -> Array:
+        """Return values of the contact at each cam angle: (n*r, k/r, ...) as (n, k, ...)."""
+        return values.reshape(*self.weights.shape, *values.shape[2:])
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class RollerTouch(Touch):
+    """A wall of a cam in space as what presses on its follower (see `Touch`).
+
+    Parameters
+    ----------
+    key : str
+        Name of the wall.
+    guide : RollerGuide
+        What carries the rollers.
+    roller : Roller
+        Its shape.
+    middle : float, mm
+        The middle of what presses, along the roller.
+    line : callable
+        ``line(theta)`` returns the `ContactLine` at cam angles (n,), rad.
+    above : bool
+        Whether it presses against the direction of a rise.
+    """
+
+    key: str
+    guide: RollerGuide
+    roller: Roller
+    middle: float
+    line: Callable[[Array], ContactLine]
+    above: bool
+
+    edges: ClassVar[Array] = np.zeros(0)  # pyright: ignore[reportIncompatibleMethodOverride]
+    """It rides on no edge."""
+
+    @property
+    def radius(self) -> float:
+        """Radius of the roller in the middle (see `Touch.radius`)."""
+        return self.roller.radius_at(self.middle)
+
+    def _shares(self, line: ContactLine, support: Support, turn: Array) -> tuple[Array, Array]:
+        """Return how the roller approaches the wall by the lift, and the line load, 1/mm, (n, k).
+
+        The line load is that of a normal force of 1.
+        """
+        points, normals = (
+            self.guide.in_plane(_turned(line.of(one), turn))
+            for one in (line.contact.points, line.contact.normals)
+        )
+        near = np.where(line.weights > 0.0, support.lifting(-normals, points), 0.0)
+        whole = (line.weights * near).sum(axis=1, keepdims=True)
+        return near, near / whole
+
+    def push(self, motion: DrivenMotion, support: Support, share: float) -> tuple[Push, Array]:
+        """Return the force of the wall, and the speed of sliding (see `Touch.push`)."""
+        turn, line = motion.x, self.line(motion.x)
+        near, density = self._shares(line, support, turn)
+        part, contact = line.weights * density, line.contact
+        points, normals, tangent = (
+            _turned(line.of(one), turn)
+            for one in (contact.points, contact.normals, contact.tangents)
+        )
+        moved = np.stack([-points[..., 1], points[..., 0], np.zeros(part.shape)], axis=-1)
+        plane = self.guide.in_plane(points)
+        along = self.guide.in_plane(tangent)
+        slide = dot(moved, tangent) - support.lifting(along, plane) * motion.ds[:, None]
+        each = share * np.sign(slide)[..., None] * tangent - normals
+        placed = self.guide.placed(motion.s)[0][0][:, None, :]
+        force, moment = (
+            (part[..., None] * one).sum(axis=1) for one in (each, cross(points - placed, each))
+        )
+        unit = self.guide.in_plane(force)
+        rubbed = share * (part * np.sign(slide) * support.lifting(along, plane)).sum(axis=1)
+        plain = (part * near).sum(axis=1)
+        push = SpacePush(
+            at=(part * plane).sum(axis=1),
+            unit=unit,
+            plain=plain,
+            effect=plain + rubbed,
+            arm=(part * dot(each, moved)).sum(axis=1),
+            force=force,
+            moment=moment,
+        )
+        return push, (part * np.abs(slide)).sum(axis=1)
+
+    def radial(self, push: Any) -> Plane:
+        """Return the force across the cam's axis for a normal force of 1 (see `Touch.radial`)."""
+        return push.force[:, 0] + 1j * push.force[:, 1]
+
+    def drag(self, force: Array, push: Any, friction: FrictionSpec) -> Array:
+        """Return the friction of the cam's journals (see `Touch.drag`)."""
+        return friction.circle * force * np.abs(self.radial(push))
+
+    def reactions(self, force: Array, push: Any) -> dict[str, Array]:
+        """Return the thrust of the cam on its bearing (see `Touch.reactions`)."""
+        return {"bearing_thrust_n": -force * push.force[:, 2]}
+
+    def pressed(self, x: Array) -> tuple[Array, Array, Array]:
+        """Return places, line loads of a normal force of 1, and relative curvatures.
+
+        Parameters
+        ----------
+        x : (n,) array, rad
+            Cam angles.
+
+        Returns
+        -------
+        place, density, curvature : (n, k) arrays, mm, 1/mm and 1/mm
+            The line load is 0 where a place is not on the cam.
+        """
+        line = self.line(x)
+        _, density = self._shares(line, self._support, x)
+        found = (line.of(one) for one in (line.contact.x, line.contact.curvature(self.roller)))
+        place, curvature = found
+        return place, density, curvature
+
+    @cached_property
+    def _support(self) -> Support:
+        return self.guide.support(SpaceFrictionSpec())
+
+    def contact(self, x: Array) -> tuple[Array, Array]:
+        """Return relative curvature and width where the pressure is largest (see `Touch`)."""
+        _, density, curvature = self.pressed(x)
+        worst = np.argmax(np.where(density > 0.0, density * curvature, -1.0), axis=1)
+        rows = np.arange(len(x))
+        return curvature[rows, worst], 1.0 / density[rows, worst]
+
+
+def _turned(vectors: Array, turn: Array) -> Array:
+    """Return vectors (n, k, 3) of the cam's frame in the fixed one, at cam angles (n,)."""
+    c, s = np.cos(turn)[:, None], np.sin(turn)[:, None]
+    x, y, z = np.moveaxis(vectors, -1, 0)
+    return np.stack([c * x - s * y, s * x + c * y, z], axis=-1)
