@@ -26,7 +26,7 @@ def pushing(
     share: Array | float,
     side: int = 1,
 ) -> tuple[Push, Array]:
-    """Return the force of a profile on what touches it, and the speed of sliding.
+    """Return the force of a profile on what touches it, and what its friction takes.
 
     Parameters
     ----------
@@ -45,8 +45,8 @@ def pushing(
     -------
     push : Push
         Its force.
-    slide : (n,) array, mm per unit of the driver's way
-        Velocity of the cam past the follower along the tangent.
+    lost : (n,) array, mm per unit of the driver's way
+        Work that friction takes, over the normal force.
     """
     support, ds = held
     normal = side * 1j * tangent
@@ -54,7 +54,7 @@ def pushing(
     unit = normal + share * np.sign(slide) * tangent
     plain, effect = support.lifting(normal, at), support.lifting(unit, at)
     arm = (unit * np.conj(moved)).real
-    return Push(at=at, unit=unit, plain=plain, effect=effect, arm=arm), slide
+    return Push(at=at, unit=unit, plain=plain, effect=effect, arm=arm), share * np.abs(slide)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -94,7 +94,7 @@ class WallTouch(Touch):
         return x, s, ds
 
     def push(self, motion: DrivenMotion, support: Support, share: float) -> tuple[Push, Array]:
-        """Return the force of the wall, and the speed of sliding (see `Touch.push`)."""
+        """Return the force of the wall, and what its friction takes (see `Touch.push`)."""
         x = motion.x
         _, s, own = self._state(x)
         wall, touching = self.wall, self.wall.follower

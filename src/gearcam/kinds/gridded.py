@@ -86,7 +86,8 @@ class GriddedCam(LoadedCam, Result):
         """
         for wall in self.cam.walls:
             self.demand_whole(wall)
-        return self.cam.touches
+        slip = self.design.friction.flank
+        return tuple(replace(one, slip=slip) for one in self.cam.touches)
 
     @property
     def driver(self) -> DriverAxis:

@@ -11,7 +11,8 @@ from gearcam.base.quantities import LENGTH, LONGEST, param, positive_length
 from gearcam.base.rules import needs
 
 
-def _coefficient(*, doc: str) -> Any:
+def coefficient(*, doc: str) -> Any:
+    """Return the field of a coefficient of friction with its meaning, 0 where left out."""
     return param(default=0.0, ge=0, le=2, zero_is_none=True, doc=doc)
 
 
@@ -27,10 +28,10 @@ class FrictionSpec(ShortRepr):
     0.03734
     """
 
-    joint: float = _coefficient(doc="of journals: shaft of the cam, pivot of a follower")
-    guide: float = _coefficient(doc="of straight guides")
-    roller: float = _coefficient(doc="of a roller on its pin")
-    flank: float = _coefficient(doc="of surfaces that slide on each other")
+    joint: float = coefficient(doc="of journals: shaft of the cam, pivot of a follower")
+    guide: float = coefficient(doc="of straight guides")
+    roller: float = coefficient(doc="of a roller on its pin")
+    flank: float = coefficient(doc="of surfaces that slide on each other")
     journal_radius: tuple[float, float] | None = param(
         LENGTH,
         default=None,
@@ -96,8 +97,8 @@ class WheelFrictionSpec(ShortRepr):
     [1.194045, 0.79603]
     """
 
-    joint: float = _coefficient(doc="of the journals of both shafts")
-    flank: float = _coefficient(doc="of flanks that slide on each other")
+    joint: float = coefficient(doc="of the journals of both shafts")
+    flank: float = coefficient(doc="of flanks that slide on each other")
     rolling: float = param(
         LENGTH, default=0.0, ge=0, le=LONGEST, doc="arm of rolling resistance of the flanks"
     )

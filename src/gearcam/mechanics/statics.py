@@ -53,7 +53,7 @@ class Touch(ABC, ShortRepr):
 
     @abstractmethod
     def push(self, motion: DrivenMotion, support: Support, share: float) -> tuple[Push, Array]:
-        """Return the force of the cam, and the speed of sliding.
+        """Return the force of the cam, and what its friction takes.
 
         Parameters
         ----------
@@ -68,8 +68,8 @@ class Touch(ABC, ShortRepr):
         -------
         push : Push
             Its force.
-        slide : (n,) array, mm per unit of the driver's way
-            Velocity of the cam past the follower's end, along the tangent.
+        lost : (n,) array, mm per unit of the driver's way
+            Work that its friction takes, over the normal force.
         """
 
     @abstractmethod
@@ -209,8 +209,7 @@ def solve(
     if len(touches) == 1:  # a spring that is solved for leaves rounding where it just holds
         holding[np.abs(holding) <= _ROUNDING * np.abs(total_load.against).max(initial=0.0)] = 0.0
     for number, touch in enumerate(touches):
-        part = share(touch.radius)
-        push, slide = touch.push(motion, support, part)
+        push, rubbed = touch.push(motion, support, share(touch.radius))
         asked = holding * push.plain >= 0.0
         found, left = support.normal_force(push, total_load, friction)
         stuck = asked & (left <= 0.0)
@@ -225,18 +224,14 @@ def solve(
         torque += pressed * push.arm + drag
         bearing += pressed * touch.radial(push)
         lost["bearing"] += drag
-        lost["contact"] += part * pressed * np.abs(slide)
+        lost["contact"] += pressed * rubbed
         rubbed = support.friction_of(pressed, push, total_load, friction) * np.abs(ds)
         lost["support"] += np.where(carries, rubbed, 0.0)
         exerted = support.reactions(pressed, push, total_load, friction)
         for name, values in (exerted | touch.reactions(pressed, push)).items():
             held = reactions.setdefault(name, np.full(count, np.nan))
             held[carries] = values[carries]
-        touching = touch.contact(motion.x)
-        curvature, width = (
-            np.where(carries, new, old)
-            for new, old in zip(touching, (curvature, width), strict=True)
-        )
+        curvature[carries], width[carries] = touch.contact(motion.x[carries])
     none = carrying < 0
     for values in (torque, *lost.values()):
         values[none] = np.nan

@@ -189,6 +189,12 @@ class RollerContact(ShortRepr):
         """Unit tangents of the roller's circumference there, (n, k, 3): a x m."""
         return cross(self._a[0], self.radial)
 
+    @property
+    def generators(self) -> Array:
+        """Unit vectors along the surface of the roller there, (n, k, 3), outwards."""
+        g = self.half_angle
+        return math.cos(g) * self._a[0] + math.sin(g) * self.radial
+
     @cached_property
     def _slopes(self) -> tuple[Array, Array]:
         """F_psi and F_x."""

@@ -7,19 +7,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from gearcam.base.quantities import LENGTH, LONGEST, fixed, param
+from gearcam.base.quantities import LENGTH, LONGEST, param
 from gearcam.base.rules import needs
-from gearcam.mechanics.friction import FrictionSpec
+from gearcam.mechanics.friction import FrictionSpec, coefficient
 
 
 @dataclass(frozen=True, kw_only=True)
 class SpaceFrictionSpec(FrictionSpec):
     """Coefficients of friction of a cam in space, 0 where left out, and sizes of bearings.
-
-    Parameters
-    ----------
-    flank : float
-        A roller does not slide.
 
     Examples
     --------
@@ -28,7 +23,9 @@ class SpaceFrictionSpec(FrictionSpec):
     SpaceFrictionSpec(guide=0.1, guide_length=60, guide_distance=70)
     """
 
-    flank: float = fixed(0.0)
+    flank: float = coefficient(
+        doc="of the slip along a roller, which has one speed where the cam is faster outside"
+    )
     guide_at: float | None = param(
         LENGTH,
         default=None,

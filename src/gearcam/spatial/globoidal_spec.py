@@ -101,7 +101,7 @@ class TurretSpec(ShortRepr):
 
     def without_friction(self, friction: SpaceFrictionSpec) -> list[str]:
         """Return the coefficients that it needs and `friction` leaves out."""
-        needed = ("roller", "joint")
+        needed = ("roller", "flank", "joint")
         return [name for name in needed if not getattr(friction, name)]
 
     def dragged(self, friction: SpaceFrictionSpec, radius: float) -> float:

@@ -7,16 +7,15 @@ proportion to the load at each place, the *line load*, N/mm, is in proportion to
 force* N is its sum. Several rollers of a turret share N by the same rule. Parts that are not
 perfect share it less evenly.
 
-On the follower acts, at each place, the line load along -n with a share of it along the
-circumference of the roller, from the friction of its pin. The cam's torque is the moment of this
+On the follower acts, at each place, the line load along -n with the friction of the roller, from
+its pin and from slip (`gearcam.spatial.slip`). The cam's torque is the moment of this
 force about its axis, all work per unit of the cam angle as for plane cams
 (`gearcam.mechanics.statics`).
 
 The pressure is that of two cylinders with the relative curvature of the line of contact
 (`RollerContact.curvature`), at the place where it is largest.
 
-Left out: the couple of a line load on the pin of the roller, and slip along the roller, which
-rolls at one speed where the cam is faster outside.
+Left out: how the pin bends under a line load that is not even.
 
 Refused by the kinds: walls that are undercut. Depends on walls and mechanics; numpy only.
 """
@@ -40,6 +39,7 @@ from gearcam.numeric.arrays import Array, Plane
 from gearcam.spatial.envelope import Roller, RollerContact, cross, dot
 from gearcam.spatial.friction import SpaceFrictionSpec
 from gearcam.spatial.guides import RollerGuide
+from gearcam.spatial.slip import rubbed
 from gearcam.spatial.supports import SpacePush
 
 
@@ -149,7 +149,7 @@ class ContactLine(NamedTuple):
             ``contact(x)`` returns the contact at places (n*rollers, k).
         """
         length = (high - low)[:, None]
-        weights = (length * _SIMPSON).reshape(len(low) // rollers, -1)
+        weights = (length * _SIMPSON).reshape(len(low) // rollers, rollers * len(_PLACES))
         return cls(contact(low[:, None] + length * _PLACES), weights)
 
     def of(self, values: Array) -> Array:
@@ -175,6 +175,8 @@ class RollerTouch(Touch):
         ``line(theta)`` returns the `ContactLine` at cam angles (n,), rad.
     above : bool
         Whether it presses against the direction of a rise.
+    slip : float
+        Coefficient of friction of the slip along a roller (see `gearcam.spatial.slip`).
     """
 
     key: str
@@ -183,6 +185,7 @@ class RollerTouch(Touch):
     middle: float
     line: Callable[[Array], ContactLine]
     above: bool
+    slip: float = 0.0
 
     edges: ClassVar[Array] = np.zeros(0)  # pyright: ignore[reportIncompatibleMethodOverride]
     """It rides on no edge."""
@@ -206,36 +209,41 @@ class RollerTouch(Touch):
         return near, near / whole
 
     def push(self, motion: DrivenMotion, support: Support, share: float) -> tuple[Push, Array]:
-        """Return the force of the wall, and the speed of sliding (see `Touch.push`)."""
+        """Return the force of the wall, and what its friction takes (see `Touch.push`)."""
         turn, line = motion.x, self.line(motion.x)
         near, density = self._shares(line, support, turn)
         part, contact = line.weights * density, line.contact
-        points, normals, tangent = (
+        points, normals, tangents, generators = (
             _turned(line.of(one), turn)
-            for one in (contact.points, contact.normals, contact.tangents)
+            for one in (contact.points, contact.normals, contact.tangents, contact.generators)
         )
         moved = np.stack([-points[..., 1], points[..., 0], np.zeros(part.shape)], axis=-1)
-        plane = self.guide.in_plane(points)
-        along = self.guide.in_plane(tangent)
-        slide = dot(moved, tangent) - support.lifting(along, plane) * motion.ds[:, None]
-        each = share * np.sign(slide)[..., None] * tangent - normals
+        plane, ways = self.guide.in_plane(points), (tangents, generators)
+        lifting = [support.lifting(self.guide.in_plane(one), plane) for one in ways]
+        shape = contact.x.shape
+        speeds = [
+            (dot(moved, one) - by_lift * motion.ds[:, None]).reshape(shape)
+            for one, by_lift in zip(ways, lifting, strict=True)
+        ]
+        friction = rubbed(
+            part.reshape(shape), contact.radius, (speeds[0], speeds[1]), share, self.slip
+        )
+        around, along, lost = (line.of(one) for one in friction)
+        each = around[..., None] * tangents + along[..., None] * generators - normals
         placed = self.guide.placed(motion.s)[0][0][:, None, :]
         force, moment = (
             (part[..., None] * one).sum(axis=1) for one in (each, cross(points - placed, each))
         )
-        unit = self.guide.in_plane(force)
-        rubbed = share * (part * np.sign(slide) * support.lifting(along, plane)).sum(axis=1)
-        plain = (part * near).sum(axis=1)
         push = SpacePush(
             at=(part * plane).sum(axis=1),
-            unit=unit,
-            plain=plain,
-            effect=plain + rubbed,
+            unit=self.guide.in_plane(force),
+            plain=(part * near).sum(axis=1),
+            effect=(part * (near + around * lifting[0] + along * lifting[1])).sum(axis=1),
             arm=(part * dot(each, moved)).sum(axis=1),
             force=force,
             moment=moment,
         )
-        return push, (part * np.abs(slide)).sum(axis=1)
+        return push, (part * lost).sum(axis=1)
 
     def radial(self, push: Any) -> Plane:
         """Return the force across the cam's axis for a normal force of 1 (see `Touch.radial`)."""

@@ -100,7 +100,7 @@ class SpatialFollower(ShortRepr):
 
     def without_friction(self, friction: SpaceFrictionSpec) -> list[str]:
         """Return the coefficients that it needs and `friction` leaves out."""
-        needed = ("roller", "joint") if self.oscillating else ("roller", "guide", "joint")
+        needed = ("roller", "flank", *(() if self.oscillating else ("guide",)), "joint")
         return [name for name in needed if not getattr(friction, name)]
 
     def dragged(self, friction: SpaceFrictionSpec, radius: float) -> float:

@@ -4,11 +4,18 @@ from __future__ import annotations
 
 from gearcam.kinds.globoidal_cam.design import GloboidalCamDesign, GloboidalOutput
 from gearcam.kinds.globoidal_cam.result import GloboidalCamResult
-from gearcam.spatial.globoidal_spec import GloboidalSpec, IndexSpec, TurretSpec
+from gearcam.spatial.globoidal_spec import (
+    GloboidalSpec,
+    IndexSpec,
+    TurretFrictionSpec,
+    TurretLoadSpec,
+    TurretMassSpec,
+    TurretSpec,
+)
 
 __all__ = [
     "GloboidalCamDesign", "GloboidalCamResult", "GloboidalOutput", "GloboidalSpec", "IndexSpec",
-    "TurretSpec",
+    "TurretFrictionSpec", "TurretLoadSpec", "TurretMassSpec", "TurretSpec",
 ]  # fmt: skip
 
 PUBLIC = {name: globals()[name] for name in __all__}
