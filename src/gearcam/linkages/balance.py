@@ -9,6 +9,9 @@ times its distance from the hinge, so that the best ones are found by linear lea
 cycle. For a four-bar with counterweights on both members at the frame the shaking force vanishes;
 for a slider-crank, its component across the guide with one on the crank (000, eqs. 5.65 and 5.69).
 
+A rotor whose unbalances are in several planes across its axis is balanced by weights in any two:
+together they have the sum of the unbalances, and their moment about any point.
+
 Source: 000, section 5.2.
 """
 
@@ -29,7 +32,7 @@ from gearcam.linkages.linkage import Linkage
 from gearcam.linkages.reactions import Structure
 from gearcam.numeric.arrays import Array, Plane
 
-_MILLI: Final = 1e-3
+MILLI: Final = 1e-3
 """N over kg mm/s2."""
 
 
@@ -137,7 +140,7 @@ def counterweights(
     columns = []
     for name in members:
         direction_of = known.frame(name).direction.derivatives()
-        turned = -_MILLI * speed**2 * np.asarray(direction_of[2])
+        turned = -MILLI * speed**2 * np.asarray(direction_of[2])
         columns += [turned, 1j * turned]  # along x and along y of the member
     system: Plane = np.stack(columns, axis=1)
     right = -force
@@ -174,3 +177,25 @@ def with_counterweights(
             points.append(MemberPoint(name, radius * one / abs(one), member))
             forces.append(InertiaForce.of_mass(name, abs(one) / radius, member))
     return Linkage((*linkage.elements, *points), linkage.knots, linkage.closed), forces
+
+
+def two_planes(unbalance: complex, lever: complex, planes: Sequence[float]) -> tuple[complex, ...]:
+    """Return what two planes carry of the unbalance of a rotor: weights opposite to it balance it.
+
+    Parameters
+    ----------
+    unbalance : complex, kg mm
+        Sum of the unbalances of its parts in its frame.
+    lever : complex, kg mm2
+        Sum of each of them times its place along the axis.
+    planes : two float, mm
+        Places of the planes along the axis, apart.
+
+    Returns
+    -------
+    two complex, kg mm
+        With the sum and the lever of the parts.
+    """
+    first, second = planes
+    width = second - first
+    return (second * unbalance - lever) / width, (lever - first * unbalance) / width

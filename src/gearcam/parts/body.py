@@ -15,6 +15,7 @@ Depends on numeric; shapely only inside `Part.region`.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, Protocol, cast
@@ -330,3 +331,44 @@ class Part(ShortRepr, NotebookView):
     def thickness(self) -> float:
         """Height from the lowest to the highest face, mm."""
         return max(layer.high for layer in self.layers) - min(layer.low for layer in self.layers)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Stack(ShortRepr):
+    """Parts that are fixed to one shaft, as conjugate cams are: a body of all their layers.
+
+    Parameters
+    ----------
+    name : str
+        See `Body`.
+    parts : tuple of Part
+        The parts, whose frames differ by their heights only.
+    heights : tuple of float, mm
+        Where z = 0 of each is.
+    """
+
+    name: str
+    parts: tuple[Part, ...]
+    heights: tuple[float, ...] = (0.0,)
+
+    @property
+    def tolerance(self) -> float:
+        """Largest chord tolerance of the parts, mm."""
+        return max(part.tolerance for part in self.parts)
+
+    @property
+    def layers(self) -> tuple[Layer, ...]:
+        """All layers of the parts."""
+        return self._raised([part.layers for part in self.parts])
+
+    @property
+    def pockets(self) -> tuple[Layer, ...]:
+        """All marks and recesses of the parts."""
+        return self._raised([part.pockets for part in self.parts])
+
+    def _raised(self, several: Sequence[Sequence[Layer]]) -> tuple[Layer, ...]:
+        return tuple(
+            replace(one, low=one.low + height, high=one.high + height)
+            for layers, height in zip(several, self.heights, strict=True)
+            for one in layers
+        )

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import singledispatch
 from typing import Any, Final
@@ -21,7 +21,7 @@ from gearcam.base.facts import Fact
 from gearcam.base.numerals import formatted
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.moments import Moments, area_error
-from gearcam.parts.body import Body, Edge, Part
+from gearcam.parts.body import Body, Edge, Layer, Part, Stack
 from gearcam.parts.tools import ToolLimits
 
 _PER_MM3: Final = 1e-9
@@ -107,15 +107,42 @@ def volume_moments(body: Body) -> tuple[Moments, float]:
     raise TypeError(f"the mass of a {type(body).__name__} cannot be computed")
 
 
-@volume_moments.register
-def _(part: Part) -> tuple[Moments, float]:
+@volume_moments.register(Part)
+@volume_moments.register(Stack)
+def _(body: Part | Stack) -> tuple[Moments, float]:
     total, height = Moments(), 0.0
-    for sign, layers in ((1.0, part.layers), (-1.0, part.pockets)):
-        for layer in layers:
-            plane = sign * layer.moments
-            total = total + layer.height * plane
-            height += 0.5 * (layer.high**2 - layer.low**2) * plane.area
+    for layer, plane in _planes(body):
+        total = total + layer.height * plane
+        height += 0.5 * (layer.high**2 - layer.low**2) * plane.area
     return total, height
+
+
+def _planes(body: Part | Stack) -> Iterator[tuple[Layer, Moments]]:
+    """Yield the layers of a body and its pockets with their plane moments, negative of pockets."""
+    for sign, layers in ((1.0, body.layers), (-1.0, body.pockets)):
+        for layer in layers:
+            yield layer, sign * layer.moments
+
+
+def products_of_inertia(body: Part | Stack, density: float) -> complex:
+    """Return the products of inertia of a body that make an unbalance act out of one plane.
+
+    Parameters
+    ----------
+    body : Part or Stack
+        The finished body.
+    density : float, kg/m^3
+        Of its material.
+
+    Returns
+    -------
+    complex, kg mm^2
+        Integral of z*(x + iy) over its mass: its unbalance times the height where it acts.
+    """
+    lever = sum(
+        0.5 * (layer.high**2 - layer.low**2) * plane.first for layer, plane in _planes(body)
+    )
+    return density * _PER_MM3 * lever
 
 
 def quadrature_error(part: Part) -> float:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import cmath
-import math
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
@@ -14,7 +13,8 @@ from gearcam.base.errors import DesignError, Problem
 from gearcam.base.facts import Fact, Tree
 from gearcam.base.numerals import formatted
 from gearcam.kinds.mechanism.asked import DEG
-from gearcam.kinds.mechanism.loaded import BODY, work_of
+from gearcam.kinds.mechanism.loaded import work_of
+from gearcam.kinds.mechanism.rotors import hinges_on_frame, rotor_facts, rotors_of, weight_facts
 from gearcam.linkages.balance import (
     Shaking,
     counterweights,
@@ -22,10 +22,7 @@ from gearcam.linkages.balance import (
     shaking,
     with_counterweights,
 )
-from gearcam.linkages.bonds import Hinge
 from gearcam.linkages.efforts import InertiaForce
-from gearcam.linkages.known import GROUND
-from gearcam.linkages.reactions import Structure
 from gearcam.numeric import narrowing
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Line
@@ -65,7 +62,7 @@ def demand(design: Any) -> None:
     """
     if design.drive[0].speed is None:
         what, key, near = "is missing: inertia depends on it", "drive[0].speed_rpm", "above 0"
-    elif not design.mass and all(one.pair is None for one in design.drive):
+    elif not design.mass and not any(one.pair or one.cam for one in design.drive):
         what, key, near = "no member has a mass", "mass", "a table [[mass]]"
     else:
         return
@@ -118,18 +115,20 @@ def study_balance(result: MechanismResult, progress: Progress) -> StudyResult:
         even = work.linkage.even_places(result.design.balance.steps)
         x = with_both_sides(even, work.knots)
         if not any(isinstance(one, InertiaForce) for one in work.efforts):
-            what, near = "nothing has a mass", "[[mass]], or density_kg_m3 of the pair's wheels"
+            what, near = "nothing has a mass", "[[mass]], or density_kg_m3 of wheels or cams"
             raise DesignError([Problem(what, file=result.design.source, key="mass", allowed=near)])
+        rotors = rotors_of(result, work, x)
         every = [work] if weighted is None else [work, weighted.work]
         q = np.unique(np.concatenate([x, *(_tops(one, x) for one in every)]))
         found = _shaking(work, q)
         left = None if weighted is None else _shaking(weighted.work, q)
+    told = {one.spec.name: rotor_facts(one, float(work.speed or 0.0)) for one in rotors}
     return StudyResult(
         result=result,
         study=result.kind.studies["balance"],
         file="balance.csv",
         table=_columns(result, q, found, left),
-        group=_facts(result, work, q, found, (weighted, left)),
+        group=_facts(result, work, q, found, (weighted, left)) | ({"rotors": told} if told else {}),
         drawn=partial(_charts, result, q, found, left),
     )
 
@@ -159,11 +158,7 @@ def _samples(work: VirtualWork) -> Array:
 def _weighted(result: MechanismResult, work: VirtualWork) -> Weighted:
     """Return the counterweights that are asked for."""
     spec, members = result.design.balance, result.design.balance.counterweights or ()
-    hinged = [
-        one.on
-        for one in Structure.of(result.linkage).bonds
-        if isinstance(one, Hinge) and one.by == GROUND and not one.on.endswith(BODY)
-    ]
+    hinged = hinges_on_frame(result.linkage)
     source, near = result.design.source, ", ".join(hinged)
     problems = [
         Problem(
@@ -231,7 +226,14 @@ def _facts(
     if weighted is None or left is None:
         return tree
     tree["counterweights"] = {
-        name: _weight_facts(name, complex(one), result.design.balance.radius)
+        name: weight_facts(
+            complex(one),
+            result.design.balance.radius,
+            f"counterweight of {name}",
+            "in its frame",
+            "its mass",
+            f"the hinge of {name}",
+        )
         for name, one in zip(weighted.members, weighted.unbalances.tolist(), strict=True)
     }
     none = _NONE * np.abs(found.force).max()
@@ -243,24 +245,6 @@ def _facts(
         )
         tree["balanced_moment_nm"] = _largest(result, q, _NM * left.moment, label, "N m")
     return tree
-
-
-def _weight_facts(name: str, unbalance: complex, radius: float | None) -> Tree:
-    """Return the facts of a counterweight."""
-    angle = math.degrees(cmath.phase(unbalance)) % 360.0
-    label = f"counterweight of {name}, mass times distance"
-    place = f"at {formatted(angle)} deg in its frame"
-    return {
-        "unbalance_kg_mm": Fact(abs(unbalance), label, place=place, unit="kg mm", shown=True),
-        "angle_deg": angle,
-        "mass_kg": radius
-        and Fact(
-            abs(unbalance) / radius,
-            f"its mass at {formatted(radius)} mm from the hinge of {name}",
-            unit="kg",
-            shown=True,
-        ),
-    }
 
 
 def _harmonic_facts(result: MechanismResult, work: VirtualWork) -> list[Tree]:

@@ -14,15 +14,25 @@ from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.brought import group_of
 from gearcam.base.display import ShortRepr
-from gearcam.base.quantities import ANGLE, COUNT, LENGTH, TEXT, fixed, param, positive_length
+from gearcam.base.numerals import formatted
+from gearcam.base.quantities import (
+    ANGLE,
+    COUNT,
+    LENGTH,
+    LONGEST,
+    TEXT,
+    fixed,
+    param,
+    positive_length,
+)
 from gearcam.base.registry import DeferredMapping, deferred
-from gearcam.base.rules import distinct, needs
+from gearcam.base.rules import Breach, distinct, needs
 from gearcam.designs.design import Design
 from gearcam.designs.outputs import OutputSpec, files_param, pose_param, studies_param
 from gearcam.kinds.mechanism import drives, names, parts
 from gearcam.kinds.mechanism.asked import TABLES, DwellSpec, IntervalSpec, StretchSpec
 from gearcam.kinds.mechanism.drives import CompareSpec, MachineDrive
-from gearcam.kinds.mechanism.keys import NAME
+from gearcam.kinds.mechanism.keys import NAME, Sort, WithNames, named
 from gearcam.kinds.mechanism.tolerances import MachinePrecisionSpec, ToleranceSpec
 from gearcam.kinds.shared import ACCURACY, AccuracySpec, ForcesSpec, GoalSpec
 from gearcam.mechanics.mass import GravitySpec
@@ -69,7 +79,8 @@ STUDIES: Final = studies_of(
     Study(
         name="balance",
         key="balance",
-        doc="Compute shaking force and moment, and counterweights; write DIR/NAME/balance.csv.",
+        doc="Compute shaking force and moment, and weights against them; "
+        "write DIR/NAME/balance.csv.",
         done="computed",
         table="balance",
         compute=deferred(f"{_HERE}.balance:study_balance"),
@@ -142,6 +153,56 @@ class BalanceSpec(ShortRepr):
         needs("direction", "counterweights"),
         needs("radius", "counterweights"),
     )
+
+
+@dataclass(frozen=True, kw_only=True)
+class RotorSpec(WithNames):
+    """Members, wheels and cams that turn together, to be balanced by weights in two planes.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.RotorSpec(name="shaft", parts=("crank", "cam.shaft"), places=(40.0, 110.0),
+    ...              planes=(20.0, 220.0))
+    RotorSpec(name='shaft', parts=('crank', 'cam.shaft'), places=(40, 110), planes=(20, 220))
+    """
+
+    name: str = named(doc="its name in the summary", example="camshaft")
+    parts: tuple[str, ...] = named(
+        needs=f"{Sort.MEMBER} or {Sort.SHAFT}",
+        example=["crank", "pair.wheel1"],
+        doc="members about one fixed axis, and wheels or cams of drives, that turn together",
+    )
+    places: tuple[float, ...] = param(
+        LENGTH,
+        ge=-LONGEST,
+        le=LONGEST,
+        example=[40, 110],
+        doc="where each is along the axis, towards the viewer: of a member its masses, of a wheel "
+        "or a cam the back of its plate",
+    )
+    planes: tuple[float, float] = param(
+        LENGTH,
+        ge=-LONGEST,
+        le=LONGEST,
+        order="first and second",
+        example=[20, 220],
+        doc="where the weights are along the axis",
+    )
+    radius: float | None = positive_length(
+        example=60, doc="distance of the weights from the axis, for their masses"
+    )
+
+    rules = (distinct("parts", "part"),)
+
+    def problems(self) -> Iterator[Breach]:
+        """Yield contradictions: field, index, message, what is allowed."""
+        if len(self.places) != len(self.parts):
+            count = len(self.parts)
+            yield "places", None, f"has {len(self.places)} for {count} parts", "one for each part"
+        if abs(self.planes[1] - self.planes[0]) < LENGTH.least:
+            apart = f"{formatted(LENGTH.least)} mm apart or more"
+            yield "planes", 1, "is in the place of the first plane", apart
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -255,6 +316,8 @@ class MechanismDesign(Design):
         Tolerances of all others, clearance, and random machines.
     balance : BalanceSpec
         Counterweights.
+    rotor : sequence of RotorSpec
+        What is balanced in two planes.
     torque : TorqueSpec
         Settings of the study of the driver's moment.
     output : MechanismOutput
@@ -301,6 +364,7 @@ class MechanismDesign(Design):
     tolerance: tuple[ToleranceSpec, ...] = ()
     precision: MachinePrecisionSpec = field(default_factory=MachinePrecisionSpec)
     balance: BalanceSpec = field(default_factory=BalanceSpec)
+    rotor: tuple[RotorSpec, ...] = ()
     torque: TorqueSpec = field(default_factory=TorqueSpec)
     output: MechanismOutput = field(default_factory=MechanismOutput)
     accuracy: AccuracySpec = field(default_factory=AccuracySpec)

@@ -16,7 +16,7 @@ from gearcam.kinds.mechanism.asked import DEG
 from gearcam.kinds.mechanism.cam_contact import contact_forces
 from gearcam.kinds.mechanism.force_checks import CHECKS, JointedMachine
 from gearcam.kinds.mechanism.keys import center_of, way_of
-from gearcam.kinds.mechanism.loaded import work_of
+from gearcam.kinds.mechanism.loaded import BODY, work_of
 from gearcam.kinds.mechanism.torque import CHECKS as TORQUE
 from gearcam.kinds.mechanism.torque import DriverEffort
 from gearcam.linkages.bonds import FORCES, Bond, ChainDrive, Hinge, SlidingJoint
@@ -495,7 +495,10 @@ def _assumed(joints: JointForces) -> str:
         words.append("no gravity")
     if any(drive.spec.pair is not None for drive in joints.result.drives):
         words.append("bearings of wheels without the force of their teeth")
-    if any(drive.spec.cam is not None for drive in joints.result.drives):
+    cams = [drive.spec.name for drive in joints.result.drives if drive.spec.cam is not None]
+    if any(f"{name}.shaft{BODY}" in joints.structure.members for name in cams):
+        words.append("bearings of cams without the force of their followers")
+    if cams:
         words.append("guides and pivots of followers without the side force of their cams")
     return ", ".join(words) or "the driver turns evenly"
 

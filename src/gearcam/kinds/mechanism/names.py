@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields, replace
 from functools import cache, cached_property
+from itertools import chain
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.designs.faults import Fault, dotted, show
@@ -94,12 +95,16 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     """
     tables = {title: one for title, one in found.parts.items() if is_read(title, found)}
     faulty = list(_of_faulty(document, found))
-    compared = [
-        NameUse(one.name, Sort.ANY, ("compare", number, "name"))
-        for number, one in enumerate(found.parts.get("compare", ()))
+    asked = [
+        [
+            NameUse(one.name, Sort.ANY, (title, number, "name"))
+            for number, one in enumerate(found.parts.get(title, ()))
+        ]
+        for title in ("compare", "rotor")
     ]
     names: dict[str, NameUse] = {GROUND: NameUse(GROUND, Sort.MEMBER, ())}
-    faults = [*_misspelt(found, compared), *_twice(compared, {})]
+    faults = [*_misspelt(found, [*chain(*asked)])]
+    faults += [fault for uses in asked for fault in _twice(uses, {})]
     faults += _twice([*given(tables), *faulty], names)
     whole = not _unread(found) and all(one.name for one in faulty)
     for one in needed(tables):
@@ -159,14 +164,14 @@ def _told_of(name: str, names: Mapping[str, NameUse]) -> bool:
 _NAME: Final = re.compile(r"[A-Za-z_][\w-]*", re.ASCII)
 
 
-def _misspelt(found: Examined, compared: Sequence[NameUse]) -> Iterator[Fault]:
+def _misspelt(found: Examined, asked: Sequence[NameUse]) -> Iterator[Fault]:
     """Yield names that cannot be parts of the names of columns and facts."""
     uses = [
         use.at(title, number)
         for title, number, table in several(found.parts)
         for use in table.written(GIVES)
     ]
-    for one in (*uses, *compared):
+    for one in (*uses, *asked):
         if not _NAME.fullmatch(one.name):
             allowed = "letters, digits, _ and -, the first a letter"
             yield Fault(one.path[:3], f"{show(one.name)} is no name", one.name, allowed)

@@ -7,6 +7,7 @@ from gearcam.kinds.mechanism.design import (
     BalanceSpec,
     MechanismDesign,
     MechanismOutput,
+    RotorSpec,
     TorqueSpec,
 )
 from gearcam.kinds.mechanism.drives import CompareSpec, MachineDrive
@@ -33,6 +34,7 @@ __all__ = [
     "MechanismDesign",
     "MechanismOutput",
     "MechanismResult",
+    "RotorSpec",
     "StretchSpec",
     "ToleranceSpec",
     "TorqueSpec",

@@ -187,6 +187,12 @@ def loads_unused(result: Any, limit: float) -> Iterator[Remark]:  # noqa: ARG001
             'gearcam torque FILE, or studies = ["torque"] in [output].',
             ", ".join(given),
         )
+    if result.design.rotor and "balance" not in result.design.output.studies:
+        yield Remark(
+            "Only the study of balance has rotors: gearcam balance FILE, or "
+            'studies = ["balance"] in [output].',
+            "rotor",
+        )
     rubs = result.design.bearing or result.design.friction != type(result.design.friction)()
     if rubs and "forces" not in result.design.output.studies:
         yield Remark(
