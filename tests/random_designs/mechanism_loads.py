@@ -83,6 +83,27 @@ def _studied(m: Machine, made: dict[str, Any]) -> None:
             if d.chance(0.5):
                 made["balance"]["direction_deg"] = d.even(-90, 90)
         made["output"]["studies"] = [*made["output"].get("studies", ()), "balance"]
+        _rotor(m, {row["name"]: row["on"] for row in cranks if "at" not in row})
+
+
+def _rotor(m: Machine, shafts: dict[str, str]) -> None:
+    """Balance some cranks that have masses and share a shaft, which stands still."""
+    d, masses = m.d, m.tables["mass"]
+    elsewhere = {row["of"] for row in masses if "center" in row}
+    heavy = {row["of"] for row in masses if "mass_kg" in row and row["of"] in shafts} - elsewhere
+    if not heavy or d.chance(0.3):
+        return
+    shaft = shafts[d.pick(sorted(heavy))]
+    parts = [one for one in sorted(heavy) if shafts[one] == shaft]
+    planes = [short(d.even(-100, 0)), short(d.even(1, 100))]
+    m.add(
+        "rotor",
+        name="rotor1",
+        parts=parts,
+        places_mm=[short(d.even(-200, 200)) for _ in parts],
+        planes_mm=planes if d.chance(0.5) else planes[::-1],
+        radius_mm=short(d.log(1, 200)),
+    )
 
 
 def _masses_and_springs(m: Machine) -> None:

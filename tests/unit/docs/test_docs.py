@@ -143,7 +143,8 @@ def unknown(summary: dict[str, Any], page: str) -> set[str]:
     own = summary.get("precision", {}).get("outputs", {})  # names of the design's own
     parts |= {*summary.get("forces", {}).get("joints", {}), *own}
     parts |= {name for one in own.values() for name in one["dimensions"]}
-    parts |= {*summary.get("balance", {}).get("counterweights", {})}
+    balance = summary.get("balance", {})
+    parts |= {*balance.get("counterweights", {}), *balance.get("rotors", {})}
     found = {re.sub(f"^{walls}", "", key) for key in keys(summary)} - parts
     units = {key: re.sub(r"per_mm(\d?)$", r"per_rad\1", key) for key in found}
     return {key for key, name in units.items() if not {key, name.replace("deg", "mm")} & names}
@@ -182,6 +183,15 @@ STUDIES: dict[tuple[str, str], tuple[str, dict[str, Any]]] = {
         {
             "mass": [{"of": "crank", "mass_kg": 2, "at_mm": [10, 0]}],
             "balance": {"counterweights": ["crank"], "radius_mm": 30},
+            "rotor": [
+                {
+                    "name": "shaft",
+                    "parts": ["crank"],
+                    "places_mm": [10],
+                    "planes_mm": [0, 40],
+                    "radius_mm": 30,
+                }
+            ],
         },
     ),
     ("mechanism", "precision"): (
