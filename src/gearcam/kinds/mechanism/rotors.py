@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from gearcam.numeric.arrays import Array, Plane
 
 _TURNED: Final = 1e-9
-"""Change of the angle between two parts that is none, rad."""
+"""Angle that is none, rad: between parts that turn together, and between near places."""
 
 _MOVED: Final = 1e-6
 """Distance of two axes, or way of a centre of mass, that is none, mm."""
@@ -110,11 +110,10 @@ class _Part:
         """Return its own products of inertia in that frame, kg mm2; 0 of what has no thickness."""
         if self.body is None:
             return 0j
-        drive = self.body.drive
-        own = drive.vector(products_of_inertia(self.body.shape, self.body.density))
-        along = -1.0 if drive.spec.mirror else 1.0  # its own z axis, towards the viewer
-        turned = self.direction[0] * cmath.exp(-1j * drive.spec.turn)
-        return along * own * complex(turned * frame[0].conj())
+        own = products_of_inertia(self.body.shape, self.body.density)
+        if self.body.drive.spec.mirror:  # its own y axis is reversed, and z looks away
+            own = -own.conjugate()
+        return own * complex(self.direction[0] * frame[0].conj())
 
 
 def _changes(values: Plane, none: float) -> bool:
