@@ -454,6 +454,9 @@ def _left_by_mill(low: float, high: float, roller: float, tool: float) -> float:
     return worst
 
 
+MODIFIED_SINE = 4.0 * math.pi / (4.0 + math.pi)
+"""Largest velocity of this law over the mean one."""
+
 CAM_NUMBERS: dict[str, dict[str, Number]] = {
     "packaging_cam": {
         # the corner of the lines of the pressure angle on the rise and on the return
@@ -489,6 +492,14 @@ CAM_NUMBERS: dict[str, dict[str, Number]] = {
             1e-8,
         ),
         "motion.peak_velocity_deg_s": (360 * 0.375 * 4 * math.pi / (4 + math.pi), 1e-9),
+        "cam.core_radius_mm": (99.5 - math.hypot(58, 8), 1e-12),
+    },
+    "carton_pusher": {
+        "motion.peak_velocity_mm_s": (60 / math.radians(140) * MODIFIED_SINE * 4 * math.pi, 1e-9),
+        "cam.groove_width_mm.floor": (2 * (11.025 - 18.5 * 0.11), 1e-12),
+    },
+    "rotary_table": {
+        "motion.peak_velocity_deg_s": (360 * 0.375 * MODIFIED_SINE, 1e-9),
         "cam.core_radius_mm": (99.5 - math.hypot(58, 8), 1e-12),
     },
     "groove_cam": {

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import gearcam as gc
+from gearcam.kinds.under_load import UnderLoad, loads_of
 from gearcam.mechanics.follower_loads import Loads
 from gearcam.mechanics.statics import Statics
 from gearcam.mechanics.supports import StraightGuide
-from gearcam.kinds.under_load import UnderLoad, loads_of
 from helpers_sampling import few
 
 CAM = """

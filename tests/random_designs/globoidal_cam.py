@@ -13,7 +13,7 @@ from gearcam.laws.motion import MOTION_LAWS
 from random_designs.draw import Draw, short
 from random_designs.goals import seek
 from random_designs.laws import random_motion_law
-from random_designs.output import drive, studies
+from random_designs.output import drive, studies, turret_forces
 
 _LAWS: Final = tuple(
     name
@@ -74,5 +74,6 @@ def design(d: Draw, index: int) -> dict[str, Any]:
             made["blank"]["density_kg_m3"] = 7850
     studies(d, made, "solid")
     drive(d, made)
+    turret_forces(d, made)
     seek(made, index, "cam.pressure_angle_deg.max", "cam.length_mm")
     return made

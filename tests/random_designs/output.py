@@ -132,6 +132,31 @@ def forces(d: Draw, design: dict[str, Any], swings: bool) -> None:
         design["output"]["studies"] = ["forces"]
 
 
+def forces_in_space(d: Draw, design: dict[str, Any], swings: bool) -> None:
+    """Give a few cylinder cams loads, as `forces` does; their guide stands beside the cam."""
+    before = design["output"].get("studies", [])
+    forces(d, design, swings)
+    design["output"] |= {"studies": [*before, "forces"]} if design.get("load") else {}
+    if "friction" in design:
+        size = design["friction"]["guide_length_mm"]
+        design["friction"]["guide_distance_mm"] = short(size * d.even(0.2, 2))
+    if design["cam"].get("walls") == "upper":
+        design.pop("spring", None)
+
+
+def turret_forces(d: Draw, design: dict[str, Any]) -> None:
+    """Give a few globoidal cams what loads their turret."""
+    forces(d, design, True)
+    design.pop("spring", None)
+    for one in design.get("load", []):
+        one["on"] = "turret"
+    for one in design.get("mass", []):
+        one |= {"of": "turret"}
+        del one["center_mm"]
+    for key in [key for key in design.get("friction", {}) if key.startswith("guide")]:
+        del design["friction"][key]
+
+
 def _load(d: Draw, swings: bool, slides: bool) -> dict[str, Any]:
     unit, load = "mm" if slides else "deg", {"on": "follower", "against": d.chance(0.3)}
     how = d.pick(["constant", "formula", "table"])

@@ -13,7 +13,7 @@ from gearcam.laws.motion import MOTION_LAWS
 from random_designs.cam import motion_by_phases, motion_of_turn
 from random_designs.draw import Draw, short
 from random_designs.goals import seek
-from random_designs.output import drive, studies
+from random_designs.output import drive, forces_in_space, studies
 
 _LAWS: Final = tuple(
     name
@@ -71,6 +71,7 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     if index % 13 == 7:  # by number: others draw the same as before
         given["outer_diameter_mm"] = "solve"
     drive(d, made)
+    forces_in_space(d, made, swings)
     seek(made, index, "cam.pressure_angle_deg.max", "cam.outer_diameter_mm")
     return made
 

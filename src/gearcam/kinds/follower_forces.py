@@ -46,11 +46,14 @@ class MoreOfForces:
         ``charts(loaded, columns)`` returns further charts.
     columns : callable
         Returns further columns.
+    facts : callable
+        Returns further facts.
     """
 
     findings: Callable[[Iterable[Finding]], tuple[Finding, ...]]
     charts: Callable[[Loaded, Mapping[str, Any]], dict[str, Chart]]
     columns: Callable[[Loaded], dict[str, Any]] = lambda _: {}
+    facts: Callable[[Loaded], Tree] = lambda _: {}
 
 
 def forces_of(result: LoadedCam, progress: Progress, more: MoreOfForces) -> StudyResult:
@@ -108,7 +111,7 @@ def forces_of(result: LoadedCam, progress: Progress, more: MoreOfForces) -> Stud
         study=result.kind.studies["forces"],
         file="forces.csv",
         table=columns,
-        group=_facts(result, loads, loaded, release),
+        group=_facts(result, loads, loaded, release) | more.facts(loaded),
         study_findings=found,
         drawn=partial(_charts, result, loaded, columns, more),
     )

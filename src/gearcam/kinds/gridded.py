@@ -89,6 +89,13 @@ class GriddedCam(LoadedCam, Result):
         slip = self.design.friction.flank
         return tuple(replace(one, slip=slip) for one in self.cam.touches)
 
+    @cached_property
+    def places_under_load(self) -> Array:
+        """Positions of the driver that the study of forces looks at (see `LoadedCam`)."""
+        from gearcam.kinds.under_load import UnderLoad
+
+        return UnderLoad(self).places()
+
     @property
     def driver(self) -> DriverAxis:
         """Name and unit of the cam angle in output."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gearcam.base.facts import Fact, extent
 from gearcam.kinds.follower_forces import MoreOfForces, forces_of
 from gearcam.mechanics.hertz import line_pressure
 from gearcam.pictures.charts import Chart, Line
@@ -14,6 +15,7 @@ from gearcam.pictures.charts import Chart, Line
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from gearcam.base.facts import Tree
     from gearcam.kinds.gridded import GriddedCam
     from gearcam.mechanics.force_checks import Loaded
     from gearcam.results.study import Progress, StudyResult
@@ -38,8 +40,29 @@ def study_forces(result: GriddedCam, progress: Progress) -> StudyResult:
     InfeasibleError
         If the cam is impossible, a wall is undercut, or no stiffness keeps the follower on the cam.
     """
-    more = MoreOfForces(findings=tuple, columns=_columns, charts=partial(_charts, result))
+    more = MoreOfForces(
+        findings=tuple,
+        columns=_columns,
+        charts=partial(_charts, result),
+        facts=partial(_facts, result),
+    )
     return forces_of(result, progress, more)
+
+
+def _facts(result: GriddedCam, loaded: Loaded) -> Tree:
+    """Return how many rollers carry, and what is taken for granted."""
+    carrying = np.zeros(len(loaded.x), dtype=int)
+    for number, touch in enumerate(result.touches):
+        rows = loaded.statics.carrying == number
+        carrying[rows] = touch.rollers(loaded.x[rows])
+    most = int(carrying.max())
+    label = "rollers that carry at a time"
+    tree: Tree = {
+        "shared": Fact("shared as by perfect parts", "load along the rollers", shown=True)
+    }
+    if most > 1:
+        tree["rollers"] = Fact(extent(int(carrying[carrying > 0].min()), most), label, shown=True)
+    return tree
 
 
 def _columns(loaded: Loaded) -> dict[str, Any]:

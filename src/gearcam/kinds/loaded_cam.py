@@ -50,8 +50,6 @@ class LoadedCam(Staged):
         return self.cam.motions[0].follower
 
     @cached_property
+    @abstractmethod
     def places_under_load(self) -> Array:
         """Positions of the driver that the study of forces looks at, rad or mm."""
-        from gearcam.kinds.under_load import UnderLoad
-
-        return UnderLoad(self).places()

@@ -74,7 +74,13 @@ class Touch(ABC, ShortRepr):
 
     @abstractmethod
     def drag(self, force: Array, push: Push, friction: FrictionSpec) -> Array:
-        """Return the friction of the cam's bearing, N mm or N, under normal forces (n,), N."""
+        """Return the friction of the cam's bearing, N mm or N.
+
+        Parameters
+        ----------
+        force : (n,) array, N
+            Normal forces of the `push`, under `friction`.
+        """
 
     @abstractmethod
     def contact(self, x: Array) -> tuple[Array, Array]:
@@ -99,11 +105,17 @@ class Touch(ABC, ShortRepr):
         """Positions of the driver, (n,), at which the follower rides on an edge."""
 
     def radial(self, push: Push) -> Plane:
-        """Return the force on the cam's bearing, across its axis, for a normal force of 1."""
+        """Return the force of a `push` across the cam's axis, for a normal force of 1."""
         return push.unit
 
     def reactions(self, force: Array, push: Push) -> dict[str, Array]:  # noqa: ARG002
-        """Return what else the normal forces (n,), N, do to the bearing, as columns of output."""
+        """Return what else the cam's bearing exerts, as columns of output.
+
+        Parameters
+        ----------
+        force : (n,) array, N
+            Normal forces of the `push`.
+        """
         return {}
 
 

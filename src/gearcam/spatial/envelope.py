@@ -257,10 +257,10 @@ def touched(axis: RollerAxis, roller: Roller, x: Array, side: int) -> RollerCont
 
 
 def dot(one: Array, other: Array) -> Array:
-    """Return the scalar products of vectors (..., 3)."""
+    """Return the scalar products of vectors, (..., 3), `one` and the `other`."""
     return np.einsum("...i,...i->...", one, other)
 
 
 def cross(one: Array, other: Array) -> Array:
-    """Return the vector products of vectors (..., 3); `numpy.cross` is slow for few of them."""
+    """Return the products of `one` and the `other`, (..., 3); `numpy.cross` is slow for few."""
     return one[..., _NEXT] * other[..., _LAST] - one[..., _LAST] * other[..., _NEXT]

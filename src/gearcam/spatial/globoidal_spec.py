@@ -105,7 +105,7 @@ class TurretSpec(ShortRepr):
         return [name for name in needed if not getattr(friction, name)]
 
     def dragged(self, friction: SpaceFrictionSpec, radius: float) -> float:
-        """Return tangential over normal force at the contact of a roller of a `radius`, mm."""
+        """Return tangential over normal force at a roller of a `radius`, mm, by its `friction`."""
         return friction.rolling(radius)
 
     def problems(self) -> Iterator[Breach]:

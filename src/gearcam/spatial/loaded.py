@@ -35,7 +35,7 @@ from gearcam.mechanics.follower_loads import DrivenMotion
 from gearcam.mechanics.friction import FrictionSpec
 from gearcam.mechanics.statics import Touch
 from gearcam.mechanics.supports import Push, Support
-from gearcam.numeric.arrays import Array, Plane
+from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.spatial.envelope import Roller, RollerContact, cross, dot
 from gearcam.spatial.friction import SpaceFrictionSpec
 from gearcam.spatial.guides import RollerGuide
@@ -77,7 +77,7 @@ class RollerFollower(ShortRepr):
         return 1.0 / self.radius
 
     def held(self, friction: SpaceFrictionSpec, highest: float) -> Support:  # noqa: ARG002
-        """Return what holds it; it does not depend on the `highest` lift."""
+        """Return what holds it, with sizes in `friction`; the `highest` lift does not matter."""
         return self.guide.support(friction)
 
     def mass_point(self, p: Array, distance: float) -> Plane:
@@ -275,6 +275,13 @@ class RollerTouch(Touch):
         found = (line.of(one) for one in (line.contact.x, line.contact.curvature(self.roller)))
         place, curvature = found
         return place, density, curvature
+
+    def rollers(self, x: Array) -> Ints:
+        """Return how many rollers press at cam angles (n,), rad."""
+        line = self.line(x)
+        rows, places = line.contact.x.shape
+        by_roller = line.weights.reshape(len(x), rows // max(len(x), 1), places)
+        return (by_roller > 0.0).any(axis=2).sum(axis=1)
 
     @cached_property
     def _support(self) -> Support:

@@ -177,6 +177,8 @@ STUDIES: dict[tuple[str, str], tuple[str, dict[str, Any]]] = {
     ("cam", "follow"): ("tappet", {"follow.file": "profile.csv"}),
     ("cam", "precision"): ("plate_cam_offset_roller", {}),
     ("spatial-cam", "developed"): ("cylinder_cam", {"developed.steps": 24}),
+    ("spatial-cam", "forces"): ("carton_pusher", {"forces.steps": 24}),
+    ("globoidal-cam", "forces"): ("rotary_table", {"forces.steps": 24}),
     ("mechanism", "torque"): ("nail_machine_slide", {"compare": []}),
     ("mechanism", "balance"): (
         "quick_return",

@@ -174,6 +174,13 @@ class CamResult(MadeCam):
             *self.errors_of_parts(),
         )
 
+    @cached_property
+    def places_under_load(self) -> Array:
+        """Positions of the driver that the study of forces looks at (see `LoadedCam`)."""
+        from gearcam.kinds.under_load import UnderLoad
+
+        return UnderLoad(self).places()
+
     def contact(self, theta: ArrayLike | None = None, wall: str | None = None) -> Columns:
         """Return the points of contact of the follower on the profile, or a wall, before clearance.
 

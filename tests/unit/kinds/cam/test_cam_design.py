@@ -197,7 +197,7 @@ def test_a_design_made_in_python_meets_the_same_rules() -> None:
         studied(KINDS["gear-pair"].studies["mesh"], design, {"steps": 3})
     drum = load(rules.ROOT / "profiles" / "cylinder_cam.toml")
     with pytest.raises(DesignError, match=r'not for kind = "cam" with cam\.form = "cylinder"'):
-        studied(KINDS["cam"].studies["forces"], drum, {})
+        studied(KINDS["cam"].studies["precision"], drum, {})
 
 
 @pytest.mark.parametrize("kind", list(KINDS))
