@@ -75,6 +75,8 @@ class Key:
 
     def outward(self, value: Any) -> Any:
         """Convert a value in mm or rad into the unit of the file; arrays become lists."""
+        if self.param.nested:  # a design, which looks for attributes in other packages
+            return value._document() if hasattr(value, "_document") else value
         value = value.tolist() if hasattr(value, "tolist") else value
         if self.param.both and not isinstance(value, list | tuple):
             value = (value, value)
@@ -85,8 +87,6 @@ class Key:
         return self._outward(value)
 
     def _outward(self, value: Any) -> Any:
-        if self.param.nested:
-            return value._document() if hasattr(value, "_document") else value
         value = value.item() if hasattr(value, "item") else value
         factor = self.param.quantity.factor
         if factor == 1.0 or isinstance(value, bool) or not isinstance(value, int | float):

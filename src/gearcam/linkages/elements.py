@@ -11,17 +11,19 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import ClassVar, Final, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, Final, NamedTuple
 
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.linkages.bonds import Bond, Hinge, PushDrive, ShaftDrive, SlidingJoint
 from gearcam.linkages.dyads import DYADS, DyadType, Lengths, Passage, Sign, Solved
 from gearcam.linkages.known import GROUND, Known
 from gearcam.linkages.plane import Frame, towards, turned
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet
+
+if TYPE_CHECKING:
+    from gearcam.linkages.bonds import Bond
 
 Law = Callable[[Array, int], Jet]
 """``law(q, order)``: turn of a shaft, rad, or way of a slide, mm, over the driver's angle."""
@@ -280,6 +282,8 @@ class Crank(ShortRepr, Element):
 
     def bonds(self, carriers: Carriers) -> Iterator[Bond]:
         """Yield its bearing and its shaft (see `Element`)."""
+        from gearcam.linkages.bonds import Hinge, ShaftDrive  # motion needs none
+
         ends = {"on": self.name, "by": carriers[self.center]}
         yield Hinge(name=self.center, place=self.center, **ends)
         # turns are those in the machine: a drive on a member is held by the frame
@@ -358,6 +362,8 @@ class PushedSlide(ShortRepr, Element):
 
     def bonds(self, carriers: Carriers) -> Iterator[Bond]:
         """Yield its guide and what pushes it (see `Element`)."""
+        from gearcam.linkages.bonds import PushDrive, SlidingJoint
+
         ends = {"on": self.name, "by": carriers[self.guide], "place": self.joint}
         yield SlidingJoint(name=self.guide, guide=self.guide, slide=self.way, **ends)
         yield PushDrive(name=self.way, guide=self.guide, way=self.way, **ends)
@@ -520,6 +526,8 @@ class Dyad(ShortRepr, Element):
 
     def bonds(self, carriers: Carriers) -> Iterator[Bond]:
         """Yield its three joints (see `Element`)."""
+        from gearcam.linkages.bonds import Hinge, SlidingJoint
+
         ends = zip(self.members, (self.first, self.second), self.kind.guides, strict=True)
         for number, (member, end, guided) in enumerate(ends, start=1):
             own = {"name": end, "on": member, "by": carriers[end]}

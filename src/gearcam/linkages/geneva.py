@@ -18,12 +18,11 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.linkages.bonds import Bond, Hinge, SlotPin
 from gearcam.linkages.elements import Carriers, Element, Law
 from gearcam.linkages.known import GROUND, Known
 from gearcam.linkages.measures import TrackMeasures
@@ -31,6 +30,9 @@ from gearcam.linkages.plane import Frame, towards
 from gearcam.numeric import jets
 from gearcam.numeric.arrays import Array, away
 from gearcam.numeric.jets import Jet
+
+if TYPE_CHECKING:
+    from gearcam.linkages.bonds import Bond
 
 _SAME: Final = 1e-9
 """Knots closer than this are one, rad."""
@@ -205,6 +207,8 @@ class GenevaWheel(ShortRepr, Element):
 
     def bonds(self, carriers: Carriers) -> Iterator[Bond]:
         """Yield the wheel's bearing and the pin (see `Element`)."""
+        from gearcam.linkages.bonds import Hinge, SlotPin  # motion needs none
+
         by = carriers[self.center]
         yield Hinge(name=f"{self.name}.center", on=self.name, by=by, place=self.name)
         yield SlotPin(

@@ -20,9 +20,9 @@ from gearcam.kinds.mechanism.keys import (
     point_param,
     sweep_param,
 )
-from gearcam.linkages.dwells import WHOLE, DriverRange, ShortRangeError, last_travels, longest_dwell
 
 if TYPE_CHECKING:
+    from gearcam.linkages.dwells import DriverRange
     from gearcam.linkages.measures import TrackMeasures
     from gearcam.linkages.path_fits import CircleFit, LineFit
     from gearcam.linkages.paths import PointPath
@@ -241,6 +241,8 @@ class IntervalSpec(Amount):
         InfeasibleError
             If the output does not travel as far.
         """
+        from gearcam.linkages.dwells import WHOLE, ShortRangeError, last_travels
+
         travel = self.amount(angle=output.angle)
         what, most = f"{self.on} does not travel as far", measures.stroke
         if measures.rise:
@@ -285,6 +287,8 @@ class DwellSpec(Amount):
 
     def longest(self, output: Output, measures: TrackMeasures) -> DriverRange:
         """Return the longest range in which an `output` with `measures` is within the amount."""
+        from gearcam.linkages.dwells import longest_dwell
+
         return longest_dwell(measures, self.amount(angle=output.angle))
 
 

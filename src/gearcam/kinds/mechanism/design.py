@@ -390,7 +390,7 @@ KIND: Final = Kind(
         "gearcam.linkages.checks",
         f"{_HERE}.torque",
         f"{_HERE}.force_checks",
-        f"{_HERE}.tolerances",
+        f"{_HERE}.precision_checks",
     ),
     check_groups=(
         "mechanisms",
@@ -421,7 +421,7 @@ KIND: Final = Kind(
     },
     facts=deferred(f"{_HERE}.shown:facts"),
     files=DeferredMapping(f"{_HERE}.shown:FILES", group_of(NAME, "formats")),
-    charts=DeferredMapping(f"{_HERE}.shown:CHARTS"),
+    charts=DeferredMapping(f"{_HERE}.charts:CHARTS"),
     scene=deferred(f"{_HERE}.drawn:scene"),
     studies=STUDIES,
     ladders=DeferredMapping(f"{_HERE}.drawn:LADDERS"),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import TYPE_CHECKING, Final
 
 from gearcam.base.numerals import formatted
@@ -13,6 +12,7 @@ from gearcam.base.rules import Breach, exactly_one
 from gearcam.designs.design import Design
 from gearcam.designs.faults import Fault, show
 from gearcam.kinds.mechanism.keys import NameUse, Sort, WithNames, angle_param, named, point_param
+from gearcam.laws.ratio import LAWS
 
 if TYPE_CHECKING:
     from gearcam.designs.kind import Examined
@@ -128,22 +128,28 @@ class MachineDrive(WrittenDrive):
     rules = (exactly_one("pair", "cam", "even", "slide"),)
 
     @property
-    def fraction(self) -> Fraction:
-        """Its ratio as a fraction: the nearest one."""
-        return Fraction(self.ratio).limit_denominator(_DENOMINATOR)
+    def fraction(self) -> tuple[int, int]:
+        """The fraction that is nearest to its ratio: turns, in so many turns of the master."""
+        cycles = range(1, _DENOMINATOR + 1)
+        # the first of those that are equally near is the one in lowest terms
+        cycle = min(cycles, key=lambda one: abs(self.ratio - round(self.ratio * one) / one))
+        return round(self.ratio * cycle), cycle
 
     @property
     def rate(self) -> float:
         """Turns of its driver per turn of the master, of which a ratio in the file is rounded."""
-        return float(self.fraction)
+        turns, cycle = self.fraction
+        return turns / cycle
 
     def problems(self) -> Iterator[Breach]:
         """Yield contradictions: field, index, message, what is allowed."""
         yield from super().problems()
         if not self.ratio:
             yield "ratio", None, "is 0", "a number, negative for the other sense of rotation"
-        elif abs(self.ratio - float(self.fraction)) > _SAME_RATIO:
-            near = f"{formatted(self.rate, 8)}, which is {self.fraction}: the cycle has to end"
+        elif abs(self.ratio - self.rate) > _SAME_RATIO:
+            turns, cycle = self.fraction
+            words = f"{turns}/{cycle}" if cycle > 1 else f"{turns}"
+            near = f"{formatted(self.rate, 8)}, which is {words}: the cycle has to end"
             yield "ratio", None, "is no fraction of small whole numbers", near
         if self.span is not None and self.slide is not None:
             yield "span", None, "is not of a drive that turns", "a pair, a cam or even = true"
@@ -158,9 +164,8 @@ class MachineDrive(WrittenDrive):
     def shafts(self) -> dict[str, Sort]:
         """What it moves, a shaft or a slide, by the words behind the name of the drive."""
         if self.pair is not None:
-            from gearcam.laws.ratio.formula import RackLaw
-
-            rack = isinstance(getattr(self.pair, "law", None), RackLaw)
+            law = getattr(self.pair, "law", None)
+            rack = law is not None and LAWS.name_of(law) == "rack"
             return {"wheel1": Sort.SHAFT} | ({"rack": Sort.WAY} if rack else {"wheel2": Sort.SHAFT})
         if self.cam is not None:
             follower = getattr(self.cam, "follower", None)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 from gearcam.kinds.mechanism.keys import center_of, way_of
 from gearcam.kinds.mechanism.names import acted_on, acting, tables_of
-from gearcam.kinds.mechanism.parts.action import LoadedLinkage
+from gearcam.kinds.mechanism.parts.acted import LoadedLinkage
 from gearcam.linkages.coordinates import MemberTurn
 from gearcam.linkages.efforts import GRAVITY, SPRINGS, InertiaForce, force_on
 from gearcam.linkages.elements import Crank, Element, PushedSlide

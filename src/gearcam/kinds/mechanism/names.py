@@ -28,13 +28,14 @@ from gearcam.kinds.mechanism.keys import (
     placed,
 )
 from gearcam.kinds.mechanism.parts import PARTS
-from gearcam.kinds.mechanism.parts.action import Acted, MachineAction
+from gearcam.kinds.mechanism.parts.action import MachineAction
 from gearcam.kinds.mechanism.parts.part import MachinePart
 from gearcam.linkages.known import GROUND
 
 if TYPE_CHECKING:
     from gearcam.designs.kind import Examined
     from gearcam.designs.lines import Path
+    from gearcam.kinds.mechanism.parts.acted import Acted
 
 Tables = Mapping[str, Any]
 """The tables of a mechanism by title."""
@@ -235,6 +236,8 @@ def _unreached(tables: Tables) -> Iterator[Fault]:
 
 def acted_on(tables: Tables) -> Acted:
     """Return what loads may act on in the `tables` of a mechanism."""
+    from gearcam.kinds.mechanism.parts.acted import Acted  # motion needs none of what acts
+
     uses = list(given(tables))
     ways, unturned = {}, {}
     for *_, part in parts_of(tables):
@@ -260,8 +263,10 @@ def unfit(found: Examined, told: Iterable[Fault]) -> Iterator[Fault]:
     told : iterable of Fault
         Of names: nothing more is said of their tables.
     """
-    acted, every = acted_on(found.parts), list(acting(found.parts))
-    vain = []
+    every = list(acting(found.parts))
+    if not every:
+        return
+    acted, vain = acted_on(found.parts), []
     for path, one in every:
         if one.moved and (name := getattr(one, one.moved)) in acted.still:
             what = f"{show(name)} stands still: what acts on it does no work"

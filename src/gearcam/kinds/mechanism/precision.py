@@ -14,7 +14,7 @@ from gearcam.designs.slips import did_you_mean
 from gearcam.kinds.mechanism.asked import DEG
 from gearcam.kinds.mechanism.forces import demand_no_change_points, joint_names
 from gearcam.kinds.mechanism.keys import center_of
-from gearcam.kinds.mechanism.tolerances import CHECKS, Deviations
+from gearcam.kinds.mechanism.precision_checks import CHECKS, Deviations
 from gearcam.linkages.coordinates import GROUND, MemberTurn, NamedCoordinate, PointWay
 from gearcam.linkages.deviations import (
     apart,

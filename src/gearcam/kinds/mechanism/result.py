@@ -21,10 +21,8 @@ from gearcam.kinds.mechanism.linkage import make_linkage
 from gearcam.kinds.mechanism.names import OutputNames, paths_asked, tables_of
 from gearcam.kinds.mechanism.placed import PlacedDrive, placed
 from gearcam.linkages.checks import KIND, CheckedMachine
-from gearcam.linkages.dwells import DriverRange
 from gearcam.linkages.linkage import Linkage
 from gearcam.linkages.measures import HIGHEST, Peak, TrackMeasures
-from gearcam.linkages.paths import PointPath
 from gearcam.linkages.transmission import Transmission, transmissions
 from gearcam.numeric.arguments import angles
 from gearcam.numeric.arrays import Array
@@ -37,7 +35,9 @@ from gearcam.results.result import Result
 
 if TYPE_CHECKING:
     from gearcam.designs.design import Design
+    from gearcam.linkages.dwells import DriverRange
     from gearcam.linkages.path_fits import CircleFit, LineFit
+    from gearcam.linkages.paths import PointPath
 
 _MOST_STEPS: Final = 1e6
 """Largest number of steps of a table."""
@@ -328,10 +328,14 @@ class MechanismResult(Result):
     @cached_property
     def paths(self) -> dict[str, PointPath]:
         """The paths of the points that are asked for, by name."""
-        linkage = self.linkage
+        names, linkage = paths_asked(self.outputs), self.linkage
+        if not names:
+            return {}
+        from gearcam.linkages.paths import PointPath
+
         return {
             name: PointPath(partial(linkage.track, name), linkage.knots, linkage.closed)
-            for name in paths_asked(self.outputs)
+            for name in names
         }
 
     @cached_property

@@ -18,13 +18,13 @@ from gearcam.base.rules import Breach
 from gearcam.kinds.mechanism.asked import DEG, Output, coordinates
 from gearcam.kinds.mechanism.keys import NameUse, Sort, angle_param, named, point_param
 from gearcam.kinds.mechanism.parts.part import MachinePart, Setting, Tree, in_degrees, not_closing
-from gearcam.linkages.coordinates import PointWay
 from gearcam.linkages.dyads import DYADS, DyadType, Lengths
 from gearcam.linkages.elements import BRANCH, MOTION, Dyad, Element
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.parts.picture import Picture
     from gearcam.linkages.closing import Closing, NotClosingError
+    from gearcam.linkages.coordinates import PointWay
     from gearcam.linkages.linkage import Linkage
     from gearcam.linkages.transmission import Transmission
 
@@ -363,6 +363,8 @@ class DyadSpec(MachinePart):
 
     def ways(self) -> Mapping[str, PointWay]:
         """Return the way of its joint, if it slides along a guide that is given."""
+        from gearcam.linkages.coordinates import PointWay
+
         if not self.moves:
             return {}
         guide = self.last if self.moves.endswith("2") else self.first

@@ -5,14 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.quantities import LENGTH, LONGEST, param, positive_length
 from gearcam.base.rules import Breach, needs
 from gearcam.kinds.mechanism.keys import Sort, WithNames, named
-from gearcam.linkages.bonds import Bond, Hinge
-from gearcam.linkages.friction import Friction, GuideFriction, JournalFriction
+
+if TYPE_CHECKING:
+    from gearcam.linkages.bonds import Bond
+    from gearcam.linkages.friction import Friction
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,6 +47,9 @@ class MachineFrictionSpec(ShortRepr):
 
     def of(self, bond: Bond) -> Friction[Any] | None:
         """Return the friction of a hinge or guide; None without."""
+        from gearcam.linkages.bonds import Hinge  # only the study of forces has friction
+        from gearcam.linkages.friction import GuideFriction, JournalFriction
+
         if isinstance(bond, Hinge):
             if not self.joint or self.journal_radius is None:
                 return None
@@ -110,6 +115,9 @@ class BearingSpec(WithNames):
         ValueError
             If something is missing, or is that of the other sort.
         """
+        from gearcam.linkages.bonds import Hinge
+        from gearcam.linkages.friction import GuideFriction, JournalFriction
+
         hinged = isinstance(bond, Hinge)
         usual = general.joint if hinged else general.guide
         coefficient = self.coefficient if self.coefficient is not None else usual

@@ -15,11 +15,11 @@ from gearcam.base.numerals import formatted
 from gearcam.kinds.mechanism.asked import Output
 from gearcam.kinds.mechanism.keys import WithNames
 from gearcam.kinds.mechanism.parts.setting import Setting
-from gearcam.linkages.coordinates import PointWay
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.parts.picture import Picture
     from gearcam.linkages.closing import NotClosingError
+    from gearcam.linkages.coordinates import PointWay
     from gearcam.linkages.elements import Element
     from gearcam.linkages.linkage import Linkage
 

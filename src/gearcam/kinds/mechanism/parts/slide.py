@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 from gearcam.kinds.mechanism.asked import Output
 from gearcam.kinds.mechanism.keys import Sort, named, point_param, way_of
 from gearcam.kinds.mechanism.parts.part import MachinePart, Setting
-from gearcam.linkages.coordinates import PointWay
 from gearcam.linkages.elements import Element, MemberPoint, PushedSlide
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.parts.picture import Picture
+    from gearcam.linkages.coordinates import PointWay
 
 
 class PushedPart(MachinePart):
@@ -44,6 +44,8 @@ class PushedPart(MachinePart):
 
     def ways(self) -> Mapping[str, PointWay]:
         """Return its way along its guide, which is that of its joint."""
+        from gearcam.linkages.coordinates import PointWay
+
         way = PointWay(self.joint, self.guide, slide=self.way)
         return dict.fromkeys((self.name, self.joint), way)
 
