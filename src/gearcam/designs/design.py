@@ -304,10 +304,10 @@ def nested_designs(design: Design) -> Iterator[tuple[Path, Design]]:
     """Yield the path and the design of each design nested in a `design`."""
     kind = KINDS[design.kind]
     for title in kind.titles_with(design.added):
-        if title in kind.nodes:
+        parts = getattr(design, title)
+        if title in kind.nodes or parts == ():
             continue
-        node = kind.node_of(design, title)
-        for at, table, part in tables_in(node, getattr(design, title), (title,)):
+        for at, table, part in tables_in(kind.node_of(design, title), parts, (title,)):
             for key, entry in table.entries.items():
                 if entry.param.nested and (inner := getattr(part, entry.name)) is not None:
                     yield (*at, key), inner
@@ -329,10 +329,11 @@ def document_of(design: Design) -> dict[str, Any]:
     kind = KINDS[design.kind]
     document: dict[str, Any] = {"kind": kind.name, "name": design.name}
     titles = kind.titles_with(design.added)
+    parts = {one: getattr(design, one) for one in titles if one not in kind.nodes}
     plain = {
-        one: written(kind.node(one, {}), getattr(design, one), {})
-        for one in titles
-        if one not in kind.nodes
+        # the class of tables that a design does not have need not be imported
+        one: [] if part == () else written(kind.node(one, {}), part, {})
+        for one, part in parts.items()
     }
     given = kind.circumstances(plain)
     for title in titles:

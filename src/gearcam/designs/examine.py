@@ -436,8 +436,12 @@ def _examine_title(
     document: Mapping[str, Any], kind: DesignKind, title: str, reading: Reading, outcome: Examined
 ) -> None:
     """Examine what is written under a title of a document."""
+    missing = title not in document
+    if missing and title in kind.several and title not in kind.required:
+        outcome.parts[title] = ()  # their class need not be imported
+        return
     node = kind.node(title, document)
-    if title not in document and title in kind.required:
+    if missing and title in kind.required:
         outcome.faults.append(_missing(node, title))
         return
     empty: Any = [] if isinstance(node, Many) else {}

@@ -269,22 +269,18 @@ class DesignKind:
     @cached_property
     def several(self) -> tuple[str, ...]:
         """Titles of tables that a file gives once or more, in double brackets."""
-        given = ((key, hint) for key, hint in self.tree.items() if key not in self.nodes)
-        return tuple(key for key, hint in given if str(hint).startswith("tuple["))
+        return tuple(
+            title
+            for title, hint in self.tree.items()
+            if title not in self.nodes and _is_several(hint)
+        )
 
     @cached_property
     def tables(self) -> Mapping[str, type]:
         """The classes of the tables with their keys, by title; of variants those of the default."""
         usual = self.variants.entries[self.variants.default].tables if self.variants else {}
-        fields = {title: hint for title, hint in self.tree.items() if title not in self.nodes}
-        # without those of variants: what they may be is not imported where the design is defined
-        rest = {title: hint for title, hint in fields.items() if title not in usual}
-        scope = vars(sys.modules[self.design.__module__])
-        found = get_type_hints(SimpleNamespace(__annotations__=rest), scope)
-        own = {
-            key: get_args(hint)[0] if key in self.several else hint for key, hint in found.items()
-        }
-        return {title: usual.get(title) or own[title] for title in fields}
+        hints = {title: hint for title, hint in self.tree.items() if title not in self.nodes}
+        return _Tables(hints, usual, vars(sys.modules[self.design.__module__]))
 
     @property
     def titles(self) -> tuple[str, ...]:
@@ -383,6 +379,43 @@ class DesignKind:
                     length = 2 if param.both else None
                     entries[key] = Key(name, key, param, float, length, "", value)
         return Table("limits", None, entries)
+
+
+def _is_several(hint: Any) -> bool:
+    """Return whether a field of a design has any number of tables."""
+    return str(hint).startswith("tuple[")
+
+
+class _Tables(Mapping[str, type]):
+    """The classes of tables by title, each found when it is used: others may not be imported.
+
+    Parameters
+    ----------
+    hints : mapping of str to object
+        The types of the fields of a design, by title, as written.
+    usual : mapping of str to type
+        The classes of some of them.
+    scope : dict
+        The names in the module of the design.
+    """
+
+    def __init__(
+        self, hints: Mapping[str, Any], usual: Mapping[str, type], scope: dict[str, Any]
+    ) -> None:
+        self._hints, self._scope, self._found = hints, scope, dict(usual)
+
+    def __getitem__(self, title: str) -> type:
+        if title not in self._found:
+            own = SimpleNamespace(__annotations__={title: self._hints[title]})
+            hint = get_type_hints(own, self._scope)[title]
+            self._found[title] = get_args(hint)[0] if _is_several(self._hints[title]) else hint
+        return self._found[title]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._hints)
+
+    def __len__(self) -> int:
+        return len(self._hints)
 
 
 class _Kinds(Mapping[str, DesignKind]):

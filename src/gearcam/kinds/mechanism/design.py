@@ -388,6 +388,7 @@ KIND: Final = Kind(
     problems=_problems,
     check_modules=(
         "gearcam.linkages.checks",
+        f"{_HERE}.parts.hoist",  # and those of chains
         f"{_HERE}.torque",
         f"{_HERE}.force_checks",
         f"{_HERE}.precision_checks",

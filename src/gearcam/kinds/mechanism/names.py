@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields, replace
-from functools import cache, cached_property
+from functools import cached_property
 from itertools import chain
 from typing import TYPE_CHECKING, Any, Final
 
@@ -124,7 +124,7 @@ def complete(found: Examined) -> bool:
     found : Examined
         The valid tables.
     """
-    return not _unread(found) and all(is_read(title, found) for title in _giving(found.kind))
+    return not _unread(found) and not _unread_giving(found)
 
 
 def _unread(found: Examined) -> bool:
@@ -133,21 +133,18 @@ def _unread(found: Examined) -> bool:
     return not alone <= {"kind", "name"}
 
 
-def _giving(kind: str) -> dict[str, list[NameUse]]:
-    """Return the keys with names that tables give, by title."""
-    return _giving_of(tuple(KINDS[kind].tables.items()))
-
-
-@cache
-def _giving_of(tables: tuple[tuple[str, type], ...]) -> dict[str, list[NameUse]]:
-    found = {title: [use for _, use in name_keys(owner, GIVES)] for title, owner in tables}
-    return {title: keys for title, keys in found.items() if keys}
+def _unread_giving(found: Examined) -> dict[str, list[NameUse]]:
+    """Return the keys with names that tables give whose names are not known, by title."""
+    tables = KINDS[found.kind].tables
+    unread = [title for title in tables if not is_read(title, found)]
+    keys = {title: [use for _, use in name_keys(tables[title], GIVES)] for title in unread}
+    return {title: uses for title, uses in keys.items() if uses}
 
 
 def _of_faulty(document: Mapping[str, Any], found: Examined) -> Iterator[NameUse]:
     """Yield the names that tables with faults give, "" for one that cannot be read."""
-    for title, keys in _giving(found.kind).items():
-        rows = () if is_read(title, found) else document.get(title)
+    for title, keys in _unread_giving(found).items():
+        rows = document.get(title)
         for number, row in enumerate(rows if isinstance(rows, list) else ()):
             for use in keys:
                 value = row.get(use.path[0]) if isinstance(row, Mapping) else None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from gearcam.kinds.mechanism import parts
 from gearcam.kinds.mechanism.asked import DwellSpec, IntervalSpec, StretchSpec
 from gearcam.kinds.mechanism.design import (
     BalanceSpec,
@@ -11,7 +12,6 @@ from gearcam.kinds.mechanism.design import (
     TorqueSpec,
 )
 from gearcam.kinds.mechanism.drives import CompareSpec, MachineDrive
-from gearcam.kinds.mechanism.parts import ACTIONS, PARTS
 from gearcam.kinds.mechanism.parts.friction import BearingSpec, MachineFrictionSpec
 from gearcam.kinds.mechanism.result import MechanismResult
 from gearcam.kinds.mechanism.tolerances import MachinePrecisionSpec, ToleranceSpec
@@ -41,4 +41,4 @@ __all__ = [
 ]
 
 PUBLIC = {name: globals()[name] for name in __all__}
-PUBLIC |= {one.__name__: one for one in (*PARTS.values(), *ACTIONS.values())}
+PUBLIC |= {name: getattr(parts, name) for name in (*parts.PARTS.values(), *parts.ACTIONS.values())}

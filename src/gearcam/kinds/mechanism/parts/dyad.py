@@ -336,8 +336,6 @@ class DyadSpec(MachinePart):
 
     def _four_bar(self, result: Any) -> Iterator[tuple[str, str, Tree]]:
         """Yield Grashof's class of an RRR dyad between a crank and a joint that stands still."""
-        from gearcam.linkages.grashof import FourBarLengths, grashof
-
         cranks = {one.joint: one for one in result.design.crank}
         fixed = {one.name: complex(*one.at) for one in result.design.joint}
         ends, lengths = (self.first, self.last), self.lengths
@@ -350,6 +348,8 @@ class DyadSpec(MachinePart):
             return
         base = abs(fixed[ends[1]] - result.linkage.shaft_of(crank.name))
         if base:
+            from gearcam.linkages.grashof import FourBarLengths, grashof
+
             found = grashof(FourBarLengths(crank.length, lengths[0], lengths[1], base))
             label = f"Grashof's class of {self.joint}"
             tree: Tree = {"class": Fact(found.name, label), "meaning": found.meaning}
