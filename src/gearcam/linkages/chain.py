@@ -11,12 +11,11 @@ import cmath
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.linkages.bonds import Bond, ChainDrive, Hinge
 from gearcam.linkages.elements import Carriers, Element
 from gearcam.linkages.known import GROUND, Known
 from gearcam.linkages.plane import Frame, rotation, square, towards
@@ -26,6 +25,9 @@ from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import extremes
 from gearcam.numeric.roots import newton_in_bracket
 
+if TYPE_CHECKING:
+    from gearcam.linkages.bonds import Bond
+
 _SLACK: Final = 1e-9
 """How far a lever may be beyond its limits by rounding, rad, and as a share of the chain."""
 
@@ -33,7 +35,7 @@ _TURNED: Final = 1e-14
 """Accuracy of a root, rad."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class LeverChain(ShortRepr, Element):
     """A chain between a wheel that stands still and a lever that it swings.
 
@@ -145,6 +147,8 @@ class LeverChain(ShortRepr, Element):
 
     def bonds(self, carriers: Carriers) -> Iterator[Bond]:
         """Yield the lever's hinge and the chain (see `Element`)."""
+        from gearcam.linkages.bonds import ChainDrive, Hinge  # motion needs none
+
         del carriers
         yield Hinge(name=f"{self.name}.hinge", on=self.name, by=GROUND, place=self.name)
         yield ChainDrive(

@@ -146,7 +146,7 @@ class Element(ABC):
         return tuple(np.full(known.q.shape, _ROUNDING) for _ in self.room(known))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class GivenMotion(ShortRepr, Element):
     """A shaft that turns, or a slide's way: a quantity that is given.
 
@@ -166,7 +166,7 @@ class GivenMotion(ShortRepr, Element):
         known.given[self.name] = self.law(known.q, known.order)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class MemberPoint(ShortRepr, Element):
     """A point of a member, or a joint that stands still.
 
@@ -199,7 +199,7 @@ class MemberPoint(ShortRepr, Element):
         yield from _of_point(self.name)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class GuideLine(ShortRepr, Element):
     """A straight guide on a member or on the ground.
 
@@ -238,7 +238,7 @@ class GuideLine(ShortRepr, Element):
         yield Dimension(f"{self.name}.direction", "direction", angle=True)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Crank(ShortRepr, Element):
     """A member that a shaft turns.
 
@@ -295,7 +295,7 @@ class Crank(ShortRepr, Element):
         yield Dimension(f"{self.name}.angle", "start", angle=True)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class WoundWay(ShortRepr, Element):
     """The way of what a wheel pulls by a chain or a rope, or a pinion by a rack.
 
@@ -324,7 +324,7 @@ class WoundWay(ShortRepr, Element):
         yield Dimension(f"{self.name}.radius", "radius", unit=math.copysign(1.0, self.radius))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PushedSlide(ShortRepr, Element):
     """A member that is pushed along a guide.
 
@@ -382,7 +382,7 @@ BRANCH, MOTION = "branch", "motion"
 """What a dyad keeps at a change point, where both of its positions meet."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Dyad(ShortRepr, Element):
     """Two members and three joints that close a loop (see `gearcam.linkages.dyads`).
 

@@ -41,7 +41,7 @@ SLOTS: Final = (3, 24)
 """Least and largest number of slots: with two the pin would have to enter at the wheel's centre."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class GenevaWheel(ShortRepr, Element):
     """A slotted wheel and the crank that indexes it.
 

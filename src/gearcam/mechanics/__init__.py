@@ -2,7 +2,7 @@
 
 Each module has a table of design files, which all kinds of design share: they name its class in
 their tables, and none reads such keys by itself. `drive` has the speed of the driver, `load` given
-forces and torques, `spring` and `mass` (with gravity) what a moving member carries, `friction` the
+forces and torques, `spring`, `mass` and `gravity` what a moving member carries, `friction` the
 coefficients with the sizes of bearings, `material` elasticity and strength; `hertz` is the pressure
 between two bodies, `clearance` what is said of a roller without any.
 

@@ -42,8 +42,9 @@ from gearcam.kinds.follower_tables import load_faults
 from gearcam.kinds.shared import AccuracySpec, ForcesSpec, GoalSpec
 from gearcam.mechanics.drive import DriveSpec
 from gearcam.mechanics.friction import FrictionSpec
+from gearcam.mechanics.gravity import GravitySpec
 from gearcam.mechanics.load import FORCES, LoadSpec
-from gearcam.mechanics.mass import GravitySpec, MassSpec
+from gearcam.mechanics.mass import MassSpec
 from gearcam.mechanics.material import MaterialSpec
 from gearcam.mechanics.spring import SpringSpec
 from gearcam.parts.blank import KIND as PARTS

@@ -26,8 +26,9 @@ from gearcam.laws.motion_table import MotionTable
 from gearcam.laws.phases_of_lift import DwellPhase, ReturnPhase, RisePhase, SegmentPhase
 from gearcam.mechanics.drive import DriveSpec, SlideDriveSpec
 from gearcam.mechanics.friction import FrictionSpec
+from gearcam.mechanics.gravity import GravitySpec
 from gearcam.mechanics.load import LoadSpec, SlideLoadSpec
-from gearcam.mechanics.mass import GravitySpec, MassSpec
+from gearcam.mechanics.mass import MassSpec
 from gearcam.mechanics.material import MaterialSpec
 from gearcam.mechanics.spring import SpringSpec
 from gearcam.parts.blank import WheelBlank

@@ -24,8 +24,8 @@ from gearcam.kinds.shared import (
 )
 from gearcam.laws.motion import MOTION_LAWS
 from gearcam.mechanics.drive import DriveSpec
+from gearcam.mechanics.gravity import GravitySpec
 from gearcam.mechanics.load import FORCES
-from gearcam.mechanics.mass import GravitySpec
 from gearcam.mechanics.material import MaterialSpec
 from gearcam.results.kind import Kind, studies_of
 from gearcam.spatial.globoidal_spec import (

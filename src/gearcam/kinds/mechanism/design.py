@@ -35,7 +35,7 @@ from gearcam.kinds.mechanism.drives import CompareSpec, MachineDrive
 from gearcam.kinds.mechanism.keys import NAME, Sort, WithNames, named
 from gearcam.kinds.mechanism.tolerances import MachinePrecisionSpec, ToleranceSpec
 from gearcam.kinds.shared import ACCURACY, AccuracySpec, ForcesSpec, GoalSpec
-from gearcam.mechanics.mass import GravitySpec
+from gearcam.mechanics.gravity import GravitySpec
 from gearcam.results.kind import Kind, Study, studies_of
 
 if TYPE_CHECKING:

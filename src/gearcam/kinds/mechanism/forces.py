@@ -35,7 +35,7 @@ from gearcam.results.study import StudyResult
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from gearcam.kinds.mechanism.parts.friction import BearingSpec
+    from gearcam.kinds.mechanism.parts.bearing import BearingSpec
     from gearcam.kinds.mechanism.result import MechanismResult
     from gearcam.linkages.friction import Friction
     from gearcam.linkages.linkage import Linkage

@@ -12,11 +12,12 @@ from gearcam.kinds.mechanism.design import (
     TorqueSpec,
 )
 from gearcam.kinds.mechanism.drives import CompareSpec, MachineDrive
-from gearcam.kinds.mechanism.parts.friction import BearingSpec, MachineFrictionSpec
+from gearcam.kinds.mechanism.parts.bearing import BearingSpec
+from gearcam.kinds.mechanism.parts.friction import MachineFrictionSpec
 from gearcam.kinds.mechanism.result import MechanismResult
 from gearcam.kinds.mechanism.tolerances import MachinePrecisionSpec, ToleranceSpec
 from gearcam.kinds.shared import AccuracySpec, ForcesSpec, GoalSpec
-from gearcam.mechanics.mass import GravitySpec
+from gearcam.mechanics.gravity import GravitySpec
 
 __all__ = [
     "AccuracySpec",

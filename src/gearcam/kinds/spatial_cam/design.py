@@ -24,8 +24,9 @@ from gearcam.kinds.shared import (
     forces_study,
 )
 from gearcam.mechanics.drive import DriveSpec
+from gearcam.mechanics.gravity import GravitySpec
 from gearcam.mechanics.load import FORCES, LoadSpec
-from gearcam.mechanics.mass import GravitySpec, MassSpec
+from gearcam.mechanics.mass import MassSpec
 from gearcam.mechanics.material import MaterialSpec
 from gearcam.mechanics.spring import SpringSpec
 from gearcam.results.kind import Kind, Study, studies_of

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Final
 from gearcam.base.registry import lazy_names
 
 if TYPE_CHECKING:
+    from gearcam.kinds.mechanism.parts.bearing import BearingSpec as BearingSpec
     from gearcam.kinds.mechanism.parts.chain import ChainSpec as ChainSpec
     from gearcam.kinds.mechanism.parts.crank import CrankSpec as CrankSpec
     from gearcam.kinds.mechanism.parts.dyad import DyadSpec as DyadSpec
-    from gearcam.kinds.mechanism.parts.friction import BearingSpec as BearingSpec
     from gearcam.kinds.mechanism.parts.friction import MachineFrictionSpec as MachineFrictionSpec
     from gearcam.kinds.mechanism.parts.geneva import GenevaSpec as GenevaSpec
     from gearcam.kinds.mechanism.parts.guide import GuideSpec as GuideSpec
@@ -49,8 +49,9 @@ ACTIONS: Final[Mapping[str, str]] = {
 """The same of what acts on mechanisms, in the order of messages."""
 
 if not TYPE_CHECKING:
-    _HOMES: Final = {title: (name,) for title, name in (PARTS | ACTIONS).items()}
-    _HOMES["friction"] = ("BearingSpec", "MachineFrictionSpec")
+    _FRICTION: Final = {"bearing": "BearingSpec", "friction": "MachineFrictionSpec"}
     __getattr__, __dir__ = lazy_names(
-        "there is no part", dict, {f"{__name__}.{home}": names for home, names in _HOMES.items()}
+        "there is no part",
+        dict,
+        {f"{__name__}.{home}": (name,) for home, name in (PARTS | ACTIONS | _FRICTION).items()},
     )

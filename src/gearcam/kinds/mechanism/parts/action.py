@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from gearcam.kinds.mechanism.parts.acted import Acted, LoadedLinkage
     from gearcam.linkages.efforts import Effort
     from gearcam.linkages.elements import Element
-    from gearcam.mechanics.mass import GravitySpec
+    from gearcam.mechanics.gravity import GravitySpec
 
 MOST: Final = 1e9
 """Largest force, N, torque, N m, and the like."""

@@ -20,10 +20,10 @@ from gearcam.base.rules import Breach
 from gearcam.kinds.mechanism.asked import TABLES
 from gearcam.kinds.mechanism.keys import Sort, angle_param, center_of, named, point_param
 from gearcam.kinds.mechanism.parts.part import MachinePart, Setting, Tree, not_closing
+from gearcam.linkages.chain import LeverChain, roots_in
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.parts.picture import Picture
-    from gearcam.linkages.chain import LeverChain
     from gearcam.linkages.closing import NotClosingError
     from gearcam.linkages.known import Known
     from gearcam.linkages.linkage import Linkage
@@ -143,8 +143,6 @@ class ChainSpec(WoundPart):
 
     @property
     def _chain(self) -> LeverChain:
-        from gearcam.linkages.chain import LeverChain  # as few machines have one
-
         return LeverChain(
             self.lever,
             self.joint,
@@ -200,8 +198,6 @@ class ChainSpec(WoundPart):
 
     def facts(self, result: Any, number: int) -> Iterator[tuple[str, str, Tree]]:
         """Yield how many positions the lever has within its range (see `MachinePart`)."""
-        from gearcam.linkages.chain import roots_in
-
         label = f"positions of {self.lever} within its range"
         yield "chains", self.lever, {"positions": Fact(roots_in(self._chain, 0.0), label, unit="")}
 

@@ -14,16 +14,18 @@ from gearcam.base.quantities import FORCE, LENGTH, LONGEST, TEXT, TORQUE, Row, p
 from gearcam.base.rules import Breach, exactly_one, needs
 from gearcam.designs.faults import Fault
 from gearcam.kinds.mechanism.keys import Sort, angle_param, later, named
+from gearcam.kinds.mechanism.parts.acted import Acted, LoadedLinkage
 from gearcam.kinds.mechanism.parts.action import MOST, MOVING, MachineAction
+from gearcam.linkages.coordinates import WorkCoordinate
+from gearcam.linkages.dwells import WHOLE, ShortRangeError, last_travels
+from gearcam.linkages.efforts import ActiveRanges, AppliedForce, Effort, ForceLaw, force_on
 from gearcam.mechanics.load import WrittenLoad
 from gearcam.numeric.arrays import Array, away
 from gearcam.numeric.jets import Jet
 
 if TYPE_CHECKING:
-    from gearcam.kinds.mechanism.parts.acted import Acted, LoadedLinkage
-    from gearcam.linkages.coordinates import Acting, WorkCoordinate
-    from gearcam.linkages.efforts import ActiveRanges, Effort, ForceLaw
-    from gearcam.mechanics.mass import GravitySpec
+    from gearcam.linkages.coordinates import Acting
+    from gearcam.mechanics.gravity import GravitySpec
 
 INNER, OUTER = "inner", "outer"
 """Dead centres, where a slide's place is least, and where it is largest."""
@@ -212,8 +214,6 @@ class MachineLoad(MachineAction, WrittenLoad):
 
     def efforts(self, on: LoadedLinkage, number: int) -> Iterator[Effort]:
         """Yield its force or torque (see `MachineAction`)."""
-        from gearcam.linkages.efforts import AppliedForce, force_on  # only studies need efforts
-
         active = self._active(on, f"load[{number}]")
         if self.force is not None and len(self.force) == 2:
             yield force_on(on.acted.joint(self.on), complex(*self.force), active=active)
@@ -227,8 +227,6 @@ class MachineLoad(MachineAction, WrittenLoad):
         yield AppliedForce(coordinate, law, active=active)
 
     def _active(self, on: LoadedLinkage, where: str) -> ActiveRanges | None:
-        from gearcam.linkages.efforts import ActiveRanges
-
         low, high = on.linkage.span
         if self.travel is not None:
             return ActiveRanges(self._travels(on, self.travel, where), high - low)
@@ -245,8 +243,6 @@ class MachineLoad(MachineAction, WrittenLoad):
     def _travels(
         self, on: LoadedLinkage, travel: float, where: str
     ) -> tuple[tuple[float, float], ...]:
-        from gearcam.linkages.dwells import WHOLE, ShortRangeError, last_travels
-
         measures, where = on.measures(on.acted.coordinate(self.on)), f"{where}.travel_mm"
         if travel > measures.stroke * WHOLE:
             what = f"{self.on} has not so much travel"

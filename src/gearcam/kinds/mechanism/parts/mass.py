@@ -10,13 +10,14 @@ from gearcam.base.quantities import INERTIA, MASS, param
 from gearcam.base.rules import Breach
 from gearcam.designs.faults import Fault
 from gearcam.kinds.mechanism.keys import Sort, named, point_param
+from gearcam.kinds.mechanism.parts.acted import Acted, LoadedLinkage
 from gearcam.kinds.mechanism.parts.action import MachineAction
+from gearcam.linkages.coordinates import MemberTurn, NamedCoordinate
+from gearcam.linkages.efforts import GRAVITY, Effort, InertiaForce, force_on
 from gearcam.linkages.elements import Element, MemberPoint
 
 if TYPE_CHECKING:
-    from gearcam.kinds.mechanism.parts.acted import Acted, LoadedLinkage
-    from gearcam.linkages.efforts import Effort
-    from gearcam.mechanics.mass import GravitySpec
+    from gearcam.mechanics.gravity import GravitySpec
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,9 +86,6 @@ class MemberMass(MachineAction):
 
     def efforts(self, on: LoadedLinkage, number: int) -> Iterator[Effort]:
         """Yield its inertia and its weight (see `MachineAction`)."""
-        from gearcam.linkages.coordinates import MemberTurn, NamedCoordinate
-        from gearcam.linkages.efforts import GRAVITY, InertiaForce, force_on
-
         if self.inertia:
             turns = NamedCoordinate if on.acted.sorts[self.of] == Sort.SHAFT else MemberTurn
             yield InertiaForce.of_turn(turns(self.of), self.inertia, self.of)

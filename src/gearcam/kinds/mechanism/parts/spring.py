@@ -25,16 +25,24 @@ from gearcam.base.quantities import (
 from gearcam.base.rules import Breach, exactly_one
 from gearcam.designs.faults import Fault
 from gearcam.kinds.mechanism.keys import Sort, named
+from gearcam.kinds.mechanism.parts.acted import Acted, LoadedLinkage
 from gearcam.kinds.mechanism.parts.action import MOST, MOVING, MachineAction
+from gearcam.linkages.coordinates import (
+    JointDistance,
+    MemberTurn,
+    NamedCoordinate,
+    PointWay,
+    WorkCoordinate,
+    WorkState,
+)
+from gearcam.linkages.efforts import SPRINGS, AppliedForce, Effort, ForceLaw
 from gearcam.linkages.known import GROUND
 from gearcam.numeric.piecewise import places_between
 
 if TYPE_CHECKING:
-    from gearcam.kinds.mechanism.parts.acted import Acted, LoadedLinkage
-    from gearcam.linkages.coordinates import Acting, JointDistance, WorkCoordinate
-    from gearcam.linkages.efforts import Effort, ForceLaw
+    from gearcam.linkages.coordinates import Acting
     from gearcam.linkages.linkage import Linkage
-    from gearcam.mechanics.mass import GravitySpec
+    from gearcam.mechanics.gravity import GravitySpec
     from gearcam.numeric.jets import Jet
 
 _SLACK: Final = 1e-9
@@ -171,9 +179,6 @@ class MachineSpring(MachineAction):
 
     def efforts(self, on: LoadedLinkage, number: int) -> Iterator[Effort]:
         """Yield its force or torque (see `MachineAction`)."""
-        from gearcam.linkages.coordinates import JointDistance, WorkState
-        from gearcam.linkages.efforts import SPRINGS, AppliedForce  # only studies need efforts
-
         (low, high), joined = on.linkage.span, self._joined(on.acted)
         if isinstance(joined, JointDistance):
             _demand_apart(on.linkage, joined, f"spring[{number}].between")
@@ -182,13 +187,6 @@ class MachineSpring(MachineAction):
         yield AppliedForce(joined, self._law(at), SPRINGS)
 
     def _joined(self, acted: Acted) -> WorkCoordinate:
-        from gearcam.linkages.coordinates import (
-            JointDistance,
-            MemberTurn,
-            NamedCoordinate,
-            PointWay,
-        )
-
         if self.between is None:
             on = acted.coordinate(self.on or "")
             # between the slide and its guide, which may move
