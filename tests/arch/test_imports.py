@@ -253,6 +253,37 @@ def test_a_build_loads_its_kind_and_its_law(
     assert {name.removeprefix("gearcam.laws.") for name in loaded & LAWS} == laws
 
 
+WITHOUT_FORCES = {
+    "importlib.metadata",
+    "gearcam.linkages.bonds",
+    "gearcam.linkages.coordinates",
+    "gearcam.linkages.efforts",
+    "gearcam.linkages.friction",
+    "gearcam.linkages.geneva",
+    "gearcam.kinds.mechanism.charts",
+    "gearcam.kinds.mechanism.parts.geneva",
+    "gearcam.kinds.mechanism.parts.load",
+    "gearcam.kinds.mechanism.precision_checks",
+    "gearcam.pictures.charts",
+}
+
+
+def test_a_csv_build_of_a_mechanism_loads_nothing_for_forces_and_charts(
+    modules: Callable[..., frozenset[str]],
+) -> None:
+    loaded = modules("press_ram", "csv")
+    assert {"gearcam.linkages.linkage", "gearcam.kinds.mechanism.parts.dyad"} <= loaded
+    assert not loaded & WITHOUT_FORCES
+
+
+def test_a_study_of_a_mechanism_loads_what_it_needs(
+    modules: Callable[..., frozenset[str]],
+) -> None:
+    """The control: loads of a machine with a study of its torque."""
+    loaded = modules("nail_machine_slide", "csv")
+    assert {"gearcam.linkages.efforts", "gearcam.kinds.mechanism.parts.load"} <= loaded
+
+
 def test_a_drawing_loads_its_writer(modules: Callable[..., frozenset[str]]) -> None:
     """The control: the list of loaded modules does show a library once it is used."""
     assert "ezdxf" in modules("ellipse", "dxf")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -93,6 +94,14 @@ def test_a_cycle_ends_after_the_denominator_of_a_ratio(ratio: float, turns: int)
     found = result.motion(q)
     assert found["P_x_mm"] == pytest.approx(place.real, abs=1e-9)
     assert found["P_y_mm"] == pytest.approx(place.imag, abs=1e-9)
+
+
+def test_the_fraction_of_a_ratio_is_the_nearest_in_lowest_terms() -> None:
+    exact = {Fraction(k, n) for n in range(1, 13) for k in range(-3 * n, 3 * n + 1) if k}
+    for one in exact:
+        made = gc.MachineDrive(name="m", even=True, ratio=float(one) + 3e-7)
+        assert made.fraction == (one.numerator, one.denominator)
+        assert made.rate == float(one)
 
 
 def test_a_ratio_that_is_no_fraction_is_refused_with_one_that_is() -> None:
