@@ -196,11 +196,15 @@ def test_packages_are_not_looked_for_where_all_names_are_known(
         raise AssertionError
 
     monkeypatch.setattr(brought, "every_entry_point", looked_for)
-    behind = MACHINE.replace(
-        "even = true",
-        "[drive.pair.law]\ntype = 'ellipse'\neccentricity = 0.3\n[drive.pair.pair]\n"
-        "module_mm = 2\nteeth = [40, 40]",
-    ).replace("speed_rpm = 60\n", "").replace("\"motor\"\njoint", "\"motor.wheel2\"\njoint")
+    behind = (
+        MACHINE.replace(
+            "even = true",
+            "[drive.pair.law]\ntype = 'ellipse'\neccentricity = 0.3\n[drive.pair.pair]\n"
+            "module_mm = 2\nteeth = [40, 40]",
+        )
+        .replace("speed_rpm = 60\n", "")
+        .replace('"motor"\njoint', '"motor.wheel2"\njoint')
+    )
     for text in (PAIR, CAM, MACHINE, behind):
         known = text.replace("universal-joint", "ellipse").replace(
             "shaft_angle_deg = 30", "eccentricity = 0.3"
