@@ -19,6 +19,7 @@ from types import SimpleNamespace
 from typing import Any, Final, Protocol, get_args, get_type_hints
 
 from gearcam.base.brought import brought, group_of, load_brought
+from gearcam.base.display import cut
 from gearcam.base.findings import CHECKS
 from gearcam.base.quantities import params_of
 from gearcam.base.registry import ExtensibleMapping
@@ -403,6 +404,9 @@ class _Tables(Mapping[str, type]):
         self, hints: Mapping[str, Any], usual: Mapping[str, type], scope: dict[str, Any]
     ) -> None:
         self._hints, self._scope, self._found = hints, scope, dict(usual)
+
+    def __repr__(self) -> str:
+        return cut(f"<tables {', '.join(self)}>")
 
     def __getitem__(self, title: str) -> type:
         if title not in self._found:
