@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -163,37 +162,32 @@ def test_the_line_load_is_the_whole_force_and_even_where_the_follower_rests(name
             )
 
 
-def in_space(touch: RollerTouch, theta: float) -> tuple[np.ndarray, np.ndarray]:
+def in_space(cam: Any, touch: RollerTouch, theta: float) -> tuple[np.ndarray, np.ndarray]:
     """Force and moment about the origin for a normal force of 1, by many sums along the roller."""
     contact, _ = touch.line(np.array([theta]))
     x = np.linspace(contact.x[0, 0], contact.x[0, -1], 4001)[None, :]
-    wall = touched(
-        contact.axis, replace(touch.roller, radius=contact.radius[0, 0]), x, contact.side
-    )
+    wall = touched(contact.axis, cam.tool, x, contact.side)
     c, s = math.cos(theta), math.sin(theta)
     turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
     points, normals = wall.points[0] @ turn.T, wall.normals[0] @ turn.T
-    loads = np.abs(normals[:, 2])
-    loads /= np.trapezoid(loads, x[0]) if hasattr(np, "trapezoid") else np.trapz(loads, x[0])  # noqa: NPY201
-    share = np.gradient(x[0]) * loads
-    share[[0, -1]] *= 0.5 if share[0] > 0.75 * share[1] else 1.0
-    return -(share[:, None] * normals).sum(axis=0), -np.cross(points, share[:, None] * normals).sum(
-        axis=0
-    )
+    share = np.abs(normals[:, 2])
+    share[[0, -1]] *= 0.5
+    each = -(share / share.sum())[:, None] * normals
+    return each.sum(axis=0), np.cross(points, each).sum(axis=0)
 
 
-@pytest.mark.parametrize("height", [0.0, 22.0])
-def test_both_ends_of_a_guide_hold_the_follower(height: float) -> None:
+@pytest.mark.parametrize(("name", "height"), [("groove", 0.0), ("groove", 22.0), ("cone", -15.0)])
+def test_both_ends_of_a_guide_hold_the_follower(name: str, height: float) -> None:
     """Six equations of equilibrium: normal force, both ends, and what keeps it from turning."""
-    result = gc.build(built("groove").design.with_({"friction.guide_at_mm": height}))
+    result = gc.build(built(name).design.with_({"friction.guide_at_mm": height}))
     statics, x, _ = studied(result)
     for k in (5, 20, 60):
         touch = result.touches[statics.carrying[k]]
-        force, moment = in_space(touch, x[k])
+        force, moment = in_space(result.cam, touch, x[k])
         z = 30.0 + result.program.derivatives(x[k : k + 1], 0)[0][0] + height
         sense = np.sign(result.program.derivatives(x[k : k + 1], 1)[1][0])
         ends = [np.array([75.0, 0.0, z + half]) for half in (30.0, -30.0)]
-        normal, load, drag = 200.0, 120.0 + 4.0 * (z - 30.0 - height), 0.0
+        normal, load, drag = 200.0, statics.against[k], 0.0
         for _ in range(200):  # the drag of the guide depends on the reactions
             columns = [np.concatenate([force, moment])]
             columns += [
@@ -228,7 +222,10 @@ def test_weight_across_the_guide_takes_part_in_its_friction() -> None:
     statics, x, ds = studied(result)
     ends = statics.reactions["guide_high_n"] + statics.reactions["guide_low_n"]
     lifting = np.array(
-        [in_space(result.touches[c], one)[0][2] for c, one in zip(statics.carrying, x, strict=True)]
+        [
+            in_space(result.cam, result.touches[c], one)[0][2]
+            for c, one in zip(statics.carrying, x, strict=True)
+        ]
     )
     needed = statics.against + 0.1 * np.sign(np.where(np.abs(ds) < 1e-9, 0.0, ds)) * ends
     assert statics.force * lifting == pytest.approx(needed, rel=1e-5)
@@ -346,6 +343,23 @@ def test_a_turret_is_moved_by_all_rollers_that_are_on_the_cam() -> None:
     tipping = math.hypot(moments[0], moments[2])
     assert statics.reactions["pivot_moment_nmm"][k] == pytest.approx(tipping, rel=1e-9)
     assert statics.reactions["pivot_thrust_n"][k] == pytest.approx(share @ normals[:, 1], rel=1e-9)
+
+
+@pytest.mark.parametrize("theta", [0.2, 0.7, 1.05, 1.4, 3.0])
+def test_all_of_each_roller_that_is_on_the_cam_presses(theta: float) -> None:
+    """The length of the lines of contact, by many places on all rollers of the turret."""
+    cam = built("indexer").cam
+    turns = 2.0 * math.pi * np.arange(-4.0, 4.0) + theta
+    x = np.tile(np.linspace(30.0, cam.reach, 28001), (len(turns), 1))
+    for touch, wall in zip(built("indexer").touches, cam.walls, strict=True):
+        points = wall.contact(turns, x).points
+        radius, height = np.hypot(points[..., 0], points[..., 1]), np.abs(points[..., 2])
+        depth = np.hypot(cam.distance - radius, points[..., 2])
+        on = (depth >= cam.top) & (height <= cam.half_length) & (radius < cam.distance)
+        length = on.sum() * 28.0 / 28000.0
+        line = touch.line(np.array([theta]))
+        assert line.weights.sum() == pytest.approx(length, abs=6e-3)
+        assert touch.rollers(np.array([theta]))[0] == on.any(axis=1).sum()
 
 
 def test_forces_of_a_roller_that_passes_a_face_do_not_jump() -> None:

@@ -308,7 +308,7 @@ class GloboidalWall(RollerWall):
     def contact_line(self, theta: Array) -> ContactLine:
         """Return where rollers press, from the tops of the ribs to their ends (see `RollerWall`).
 
-        A roller that passes a face presses up to this face only.
+        A roller that passes a face presses up to this face only; outside it is farther away.
         """
         cam = self.cam
         # beyond this angle all of a roller is beyond the faces
@@ -318,14 +318,11 @@ class GloboidalWall(RollerWall):
         every = (theta[:, None] + TURN * (first[:, None] + turns)).ravel()
         low, high = self.place(every, cam.top), np.full(len(every), cam.reach)
 
-        at_top, at_end = (self._beyond_face(every, one) > 0.0 for one in (low, high))
-        cut = np.flatnonzero(at_top != at_end)
-        face = bracketed_root(
-            partial(self._beyond_face, every[cut]), low[cut], high[cut], ROOT * cam.distance
-        )
-        low[cut] = np.where(at_top[cut], face, low[cut])
-        high[cut] = np.where(at_end[cut], face, high[cut])
-        low = np.where(at_top & at_end, high, low)
+        off = self._beyond_face(every, low) > 0.0
+        cut = np.flatnonzero((self._beyond_face(every, high) > 0.0) & ~off)
+        at_face = partial(self._beyond_face, every[cut])
+        high[cut] = bracketed_root(at_face, low[cut], high[cut], ROOT * cam.distance)
+        high = np.where(off, low, high)
         return ContactLine.between(low, high, len(turns), partial(self.contact, every))
 
     def grid(self, theta: Array, count: int, beyond: float = 0.0) -> RollerContact:
