@@ -308,7 +308,7 @@ class GloboidalWall(RollerWall):
     def contact_line(self, theta: Array) -> ContactLine:
         """Return where rollers press, from the tops of the ribs to their ends (see `RollerWall`).
 
-        A roller that passes a face presses up to this face only; outside it is farther away.
+        A roller that passes a face presses up to this face only.
         """
         cam = self.cam
         # beyond this angle all of a roller is beyond the faces
@@ -317,7 +317,7 @@ class GloboidalWall(RollerWall):
         turns = np.arange(math.floor(2.0 * last / cam.pitch) + 1.0)
         every = (theta[:, None] + TURN * (first[:, None] + turns)).ravel()
         low, high = self.place(every, cam.top), np.full(len(every), cam.reach)
-
+        # along a roller the distance from the middle of the cam only rises
         off = self._beyond_face(every, low) > 0.0
         cut = np.flatnonzero((self._beyond_face(every, high) > 0.0) & ~off)
         at_face = partial(self._beyond_face, every[cut])
