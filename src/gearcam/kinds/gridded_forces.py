@@ -11,6 +11,7 @@ from gearcam.base.facts import Fact, extent
 from gearcam.kinds.follower_forces import MoreOfForces, forces_of
 from gearcam.mechanics.hertz import line_pressure
 from gearcam.pictures.charts import Chart, Line
+from gearcam.spatial.loaded import ALONG
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -77,12 +78,12 @@ def _charts(result: GriddedCam, loaded: Loaded, _: Mapping[str, Any]) -> dict[st
         return {}
     top = int(np.nanargmax(statics.force))
     touch = result.touches[int(statics.carrying[top])]
-    places, loads, curvature = (one[0] for one in touch.pressed(loaded.x[top : top + 1]))
+    pressed = touch.pressed(loaded.x[top : top + 1])
+    places, loads, curvature = (one.reshape(-1, ALONG) for one in pressed)
     loads = statics.force[top] * loads
     pressure = line_pressure(loads, curvature, result.design.material)
-    rollers = np.split(np.arange(len(places)), np.flatnonzero(np.diff(places) <= 0.0) + 1)
-    rollers = [one for one in rollers if loads[one].any()]
-    where = f"along the rollers {loaded.at(top)}, of the largest normal force"
+    rollers = np.flatnonzero(loads.any(axis=1))
+    where = f"along the rollers {loaded.at(top)}, where the normal force is largest"
 
     def chart(title: str, axis: str, values: Any) -> Chart:
         lines = tuple(

@@ -112,7 +112,10 @@ class RollerMotion(ShortRepr):
 _CELLS: Final = 8
 """Pairs of intervals along a line of contact; load and curvature hardly bend along it."""
 
-_PLACES: Final = np.linspace(0.0, 1.0, 2 * _CELLS + 1)
+ALONG: Final = 2 * _CELLS + 1
+"""Number of places along a line of contact."""
+
+_PLACES: Final = np.linspace(0.0, 1.0, ALONG)
 """Even places along it, both ends among them."""
 
 _SIMPSON: Final = np.array([1.0, *([4.0, 2.0] * _CELLS)[:-1], 1.0]) / (6.0 * _CELLS)
@@ -149,7 +152,7 @@ class ContactLine(NamedTuple):
             ``contact(x)`` returns the contact at places (n*rollers, k).
         """
         length = (high - low)[:, None]
-        weights = (length * _SIMPSON).reshape(len(low) // rollers, rollers * len(_PLACES))
+        weights = (length * _SIMPSON).reshape(len(low) // rollers, rollers * ALONG)
         return cls(contact(low[:, None] + length * _PLACES), weights)
 
     def of(self, values: Array) -> Array:
@@ -279,8 +282,7 @@ class RollerTouch(Touch):
     def rollers(self, x: Array) -> Ints:
         """Return how many rollers press at cam angles (n,), rad."""
         line = self.line(x)
-        rows, places = line.contact.x.shape
-        by_roller = line.weights.reshape(len(x), rows // max(len(x), 1), places)
+        by_roller = line.weights.reshape(len(x), line.weights.shape[1] // ALONG, ALONG)
         return (by_roller > 0.0).any(axis=2).sum(axis=1)
 
     @cached_property
