@@ -171,7 +171,7 @@ class Rule:
         return f"<Rule {self.breaches.__qualname__.partition('.')[0]}>"
 
 
-def exactly_one(*names: str, note: str = "") -> Rule:
+def exactly_one(*names: str, note: str = "", both: tuple[str, str] | None = None) -> Rule:
     """Return the rule that exactly one of some fields is given; a `note` follows what is allowed.
 
     Parameters
@@ -180,6 +180,8 @@ def exactly_one(*names: str, note: str = "") -> Rule:
         The fields.
     note : str
         Text after what is allowed.
+    both : (str, str), optional
+        Two of them that may be given together.
     """
 
     def breaches(values: Values) -> Iterator[Breach]:
@@ -188,10 +190,17 @@ def exactly_one(*names: str, note: str = "") -> Rule:
         if all(values[name].missing for name in names):
             keys = " nor ".join(_keys(values, *names))
             yield "", None, f"neither {keys} is given", allowed
-        for name in written[1:]:
+        for name in () if tuple(written) == both else written[1:]:
             yield name, None, f"is given beside {values[written[0]].text}", allowed
 
-    return Rule(breaches, lambda keys: {"oneOf": [keys[name].written for name in names]})
+    def schema(keys: Any) -> Any:
+        alone = {name: keys[name].written for name in names}
+        if both is not None:
+            first, second = both
+            alone[second] = {"allOf": [alone[second], {"not": alone[first]}]}
+        return {"oneOf": [*alone.values()]}
+
+    return Rule(breaches, schema)
 
 
 def needs(

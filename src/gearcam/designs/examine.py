@@ -514,7 +514,8 @@ def _in_place(
 ) -> tuple[Any, list[Fault]]:
     """Return the design that is written in a table at a path, and its faults."""
     kinds, name = key.param.nested, value.get("kind", MISSING)
-    name = kinds[0] if name is MISSING and len(kinds) == 1 else name
+    if name is MISSING and len({_spoken(one) for one in kinds}) == 1:
+        name = _spoken(kinds[0])
     if name not in kinds:
         message = "is missing" if name is MISSING else f"{show(name)} does not belong here"
         return None, [Fault((*at, "kind"), message, name, quoted(kinds), did_you_mean(name, kinds))]
@@ -525,6 +526,12 @@ def _in_place(
     if outcome.faults:
         return None, [_outward(fault, at, KINDS[name].titles) for fault in outcome.faults]
     return KINDS[outcome.kind].made(outcome.parts, place.file), []
+
+
+def _spoken(kind: str) -> str:
+    """Return the kind that stands in files for a `kind`: that of which it is a variant, or it."""
+    found = variant_of(KINDS[kind])
+    return found[0].name if found else kind
 
 
 def _unfit(key: Key, kind: DesignKind, document: Mapping[str, Any]) -> tuple[Path, str, str] | None:

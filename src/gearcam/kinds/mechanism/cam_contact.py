@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.mechanics.follower_loads import DrivenMotion
 
@@ -16,6 +16,14 @@ if TYPE_CHECKING:
 
 _KILO: Final = 1e3
 """N mm of a N m."""
+
+_ONE_SIDED: Final = {"disc": 1.0, "lower": 1.0, "upper": -1.0}
+"""The side to which cams with one wall push, by their form or their wall: 1 in the lift."""
+
+
+def one_sided(design: Any) -> float:
+    """Return the side to which alone a cam of a `design` pushes: 1 in the lift; 0 if to both."""
+    return _ONE_SIDED.get(getattr(design.cam, "walls", design.cam.form), 0.0)
 
 
 def contact_forces(
@@ -43,7 +51,7 @@ def contact_forces(
 
     loads = {one.drive: one for one in shaft_loads(result, work, q)}
     for drive in result.drives:
-        if drive.spec.cam is not None:
+        if drive.spec.cam is not None and not drive.spec.in_space:
             exerted = loads[drive.spec.name]
             scale = _KILO if exerted.column.endswith("_nm") else 1.0
             yield drive.spec.name, scale * exerted.values / _effect(drive, q)
@@ -55,7 +63,7 @@ def _effect(drive: PlacedDrive, q: Array) -> Array:
     motion = cam.motions[0]
     program, follower = motion.program, motion.follower
     support = follower.held(drive.result.design.friction, program.range[1])
-    x = drive.own(q) % program.period
+    _, x = program.within(drive.own(q))
     s, ds, d2s = program.derivatives(x, 2)
     push, _ = cam.touches[0].push(DrivenMotion(x, s, ds, d2s), support, 0.0)
     return push.plain

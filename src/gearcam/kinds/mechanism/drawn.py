@@ -2,7 +2,7 @@
 
 The drawings are the machine at an angle of its master, and the paths of its points. Members are
 symbols, wheels and cams are those of the pair or the cam itself, moved as the linkage takes them:
-by the drive's laws. Layers begin with the name of the point whose PATH is on them, or with the
+by the drive's laws; cams in space are outlines of their blanks. Layers begin with the name of the point whose PATH is on them, or with the
 wheel.
 
 The distance of a path from its chord is measured at three angles inside the chord. It falls with
@@ -49,7 +49,8 @@ from gearcam.results.ladders import CHORD_ORDER, ROUNDING, SHARES, Ladder, toler
 from gearcam.results.nested import within
 
 if TYPE_CHECKING:
-    from gearcam.kinds.mechanism.placed import Moved, PlacedDrive
+    from gearcam.kinds.mechanism.moved import Moved
+    from gearcam.kinds.mechanism.placed import PlacedDrive
     from gearcam.kinds.mechanism.result import MechanismResult
     from gearcam.numeric.arrays import Array, Plane
 
@@ -195,6 +196,9 @@ def _driven(result: MechanismResult, number: int, q: Array) -> Iterator[MovingBo
     drive = result.drives[number]
     if drive.result is None:
         return
+    if drive.spec.in_space:
+        yield from _driven_in_space(drive, q)
+        return
     with within(f"drive[{number}].{drive.spec.key}"):
         scene = drive.result.plain.scene(1)
     x = drive.own(q)
@@ -208,6 +212,19 @@ def _driven(result: MechanismResult, number: int, q: Array) -> Iterator[MovingBo
             features=tuple(_seen(drive, body.features)),
             pose=_placed(drive, _motion(moved, x) @ body.pose[0]),
             teeth=None,
+        )
+
+
+def _driven_in_space(drive: PlacedDrive, q: Array) -> Iterator[MovingBody]:
+    """Yield the bodies of a cam in space."""
+    from gearcam.kinds.mechanism.drawn_in_space import drawn_in_space
+
+    for word, features in drawn_in_space(drive).items():
+        yield MovingBody(
+            name=f"{drive.spec.name.replace('_', ' ')}.{word}",
+            called=f"{word} of {drive.spec.name}",
+            features=tuple(_seen(drive, features)),
+            pose=_placed(drive, _motion(drive.moved.get(word), drive.own(q))),
         )
 
 

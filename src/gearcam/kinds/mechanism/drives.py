@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 _DENOMINATOR: Final = 12
 """Largest denominator of a drive's ratio: turns of the master in a cycle."""
 
+_SUCH: Final = '"50*(1 - cos(q))"'
+"""A formula of the place of a plate."""
+
 _SAME_RATIO: Final = 1e-6
 """Difference of a ratio from a fraction of which it is the decimals."""
 
@@ -37,6 +40,16 @@ class WrittenDrive(WithNames):
         """The key that says what it is: ``pair``, ``cam``, ``even``, ``slide``; empty if none."""
         given = (key for key in ("pair", "cam", "even", "slide") if getattr(self, key, None))
         return next(given, "")
+
+    @property
+    def in_space(self) -> bool:
+        """Whether it is a cam in space, whose shaft lies in the plane of the mechanism."""
+        return self.cam is not None and self.cam.kind != "cam"
+
+    @property
+    def slides(self) -> bool:
+        """Whether it is a plate that slides: a cam without an angle."""
+        return getattr(getattr(self.cam, "cam", None), "form", "") == "translating"
 
     def problems(self) -> Iterator[Breach]:
         """Yield ``even = false``: field, index, message, what is allowed."""
@@ -60,7 +73,12 @@ class CompareSpec(WrittenDrive):
         "gear-pair", default=None, example="pair.toml", doc="the pair that drives it"
     )
     cam: Design | None = nested(
-        "cam", default=None, example="cam.toml", doc="the cam whose follower drives it"
+        "cam",
+        "spatial-cam",
+        "globoidal-cam",
+        default=None,
+        example="cam.toml",
+        doc="the cam whose follower or turret drives it",
     )
     even: bool | None = param(
         default=None, example=True, doc="true: a shaft that turns with the driver itself"
@@ -74,7 +92,7 @@ class MachineDrive(WrittenDrive):
     """A drive of a mechanism; the first one is the master, whose angle all motion is given over.
 
     The wheels of a pair, the follower of a cam or a slide move as their designs say; an even drive
-    turns with the master. A drive stands in its own frame, which may be moved in the machine.
+    turns with the master, and a plate slides by a formula. A drive stands in its own frame, which may be moved in the machine.
 
     Examples
     --------
@@ -90,7 +108,12 @@ class MachineDrive(WrittenDrive):
         "gear-pair", default=None, example="pair.toml", doc="the pair: its wheels or its rack move"
     )
     cam: Design | None = nested(
-        "cam", default=None, example="cam.toml", doc="the cam: its follower moves"
+        "cam",
+        "spatial-cam",
+        "globoidal-cam",
+        default=None,
+        example="cam.toml",
+        doc="the cam: its follower moves, or its turret",
     )
     even: bool | None = param(
         default=None, example=True, doc="true: a shaft that turns with the master"
@@ -99,7 +122,8 @@ class MachineDrive(WrittenDrive):
         TEXT,
         default=None,
         example="20*sin(q)",
-        doc="place of a slide, mm, as a formula in the master's angle q, rad",
+        doc="place of a slide, or of a cam of the form translating, mm, as a formula in the master's "
+        "angle q, rad",
     )
     speed: float | None = param(
         RPM, default=None, gt=0, le=1e6, example=180, doc="mean speed of the driver, of the master"
@@ -125,7 +149,7 @@ class MachineDrive(WrittenDrive):
         default=False, doc="whether it is reflected in its x axis: all turns are reversed"
     )
 
-    rules = (exactly_one("pair", "cam", "even", "slide"),)
+    rules = (exactly_one("pair", "cam", "even", "slide", both=("cam", "slide")),)
 
     @property
     def fraction(self) -> tuple[int, int]:
@@ -155,6 +179,11 @@ class MachineDrive(WrittenDrive):
             yield "span", None, "is not of a drive that turns", "a pair, a cam or even = true"
         if self.span is not None and self.span[0] >= self.span[1]:
             yield "span", 1, "is not above the first angle", "rising angles"
+        if self.cam is not None and self.slides == (self.slide is None):
+            what, allowed = "is not of a cam that turns", "a cam of the form translating"
+            if self.slides:
+                what, allowed = "is missing: it moves the plate", f"such as {_SUCH}"
+            yield "slide", None, what, allowed
         if self.slide is not None:
             from gearcam.laws.formula import formula_problems
 
@@ -168,16 +197,26 @@ class MachineDrive(WrittenDrive):
             rack = law is not None and LAWS.name_of(law) == "rack"
             return {"wheel1": Sort.SHAFT} | ({"rack": Sort.WAY} if rack else {"wheel2": Sort.SHAFT})
         if self.cam is not None:
-            follower = getattr(self.cam, "follower", None)
+            if (follower := getattr(self.cam, "follower", None)) is None:
+                return {"turret": Sort.SHAFT}
+            own = {"plate": Sort.WAY} if self.slides else {"shaft": Sort.SHAFT}
             swings = getattr(follower, "motion", "") == "oscillating"
-            return {"shaft": Sort.SHAFT, "follower": Sort.SHAFT if swings else Sort.WAY}
+            moved = {"follower": Sort.SHAFT if swings else Sort.WAY}
+            return moved if self.in_space else own | moved
         return {"shaft": Sort.SHAFT} if self.even else {"slide": Sort.WAY}
 
     def names_of(self, word: str) -> Iterator[str]:
         """Yield the names of what it moves, by its `word`: the only thing has that of the drive."""
         yield f"{self.name}.{word}"
-        if self.even or self.slide is not None:
+        if self.key in ("even", "slide"):
             yield self.name
+
+    @property
+    def shaftless(self) -> str:
+        """Why nothing can be on the shaft of its cam; empty if it has one, or no cam."""
+        if self.slides:
+            return "a plate slides: it has no shaft"
+        return "it lies in the plane, across which all shafts stand" if self.in_space else ""
 
     def given(self) -> Iterator[NameUse]:
         """Yield the names of what it moves."""
@@ -213,27 +252,25 @@ def problems(found: Examined) -> Iterator[Fault]:
         The valid tables.
     """
     drives, compared = (found.parts.get(title, ()) for title in ("drive", "compare"))
-    yield from _sliding("drive", drives)
-    yield from _sliding("compare", compared)
+    yield from _sliding(compared)
     for number, one in enumerate(drives):
         yield from _without_effect(number, one)
     if drives and drives[0].slide is not None:
         what = f"{show(drives[0].slide)} has no angle over which the motion could be given"
-        allowed = "a first drive with pair, cam or even = true, and the slide behind it"
+        behind = "plate" if drives[0].slides else "slide"
+        allowed = f"a first drive with pair, cam or even = true, and the {behind} behind it"
         yield Fault(("drive", 0, "slide"), what, drives[0].slide, allowed)
     if drives and is_read("drive", found):
         for number, one in enumerate(compared):
             yield from _not_comparable(number, one, drives[0])
 
 
-def _sliding(
-    title: str, drives: tuple[MachineDrive, ...] | tuple[CompareSpec, ...]
-) -> Iterator[Fault]:
-    """Yield cams without an angle over which motion could be given."""
-    for number, one in enumerate(drives):
-        if getattr(getattr(one.cam, "cam", None), "form", "") == "translating":
-            what = f"the cam {show(getattr(one.cam, 'name', ''))} slides: it has no shaft"
-            yield Fault((title, number, "cam"), what, None, "a cam that turns")
+def _sliding(compared: tuple[CompareSpec, ...]) -> Iterator[Fault]:
+    """Yield plates to compare, which have no angle over which motion could be given."""
+    for number, one in enumerate(compared):
+        if one.slides:
+            what = f"the cam {show(getattr(one.cam, 'name', ''))} slides: it has no angle"
+            yield Fault(("compare", number, "cam"), what, None, "a cam that turns")
 
 
 def _without_effect(number: int, one: MachineDrive) -> Iterator[Fault]:

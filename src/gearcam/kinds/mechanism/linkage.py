@@ -12,6 +12,7 @@ import numpy as np
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import LONGEST
+from gearcam.cams.carriers import ROUNDING
 from gearcam.kinds.mechanism.names import needed, parts_of, standing_places, told_parts
 from gearcam.kinds.mechanism.parts.setting import Setting
 from gearcam.linkages.closing import NotClosingError, settled
@@ -60,6 +61,7 @@ def make_linkage(tables: Tables, drives: Sequence[PlacedDrive]) -> Linkage:
     """
     parts = {f"{title}[{number}]": part for title, number, part in parts_of(tables)}
     (low, high), closed = _cycle_of(drives, _period(tables))
+    _demand_on_plates(drives, (low, high))
     inner = [one.knots_in(low, high) for one in drives]
     knots = apart(np.unique(np.concatenate([[low, high], *inner])), _SAME)
     knots[-1] = high  # rather than one that differs by rounding
@@ -176,9 +178,11 @@ def _part_of(master: PlacedDrive) -> tuple[float, float]:
 def _demand_inside(drives: Sequence[PlacedDrive], part: tuple[float, float]) -> None:
     """Refuse open drives that a range of the master takes beyond their ends."""
     for number, drive in enumerate(drives[1:], start=1):
+        if drive.closed:
+            continue
         own = sorted(drive.own(np.array(part)))
         ends = float(drive.knots[0]), float(drive.knots[-1])
-        if not drive.closed and (own[0] < ends[0] - _WHOLE or own[1] > ends[1] + _WHOLE):
+        if own[0] < ends[0] - _WHOLE or own[1] > ends[1] + _WHOLE:
             goes, allowed = ([formatted(math.degrees(q), 6) for q in two] for two in (own, ends))
             raise InfeasibleError(
                 f"{drive.spec.name} would turn from {goes[0]} to {goes[1]} deg, beyond its ends",
@@ -199,19 +203,19 @@ def _back(drive: PlacedDrive, turns: int) -> bool:
     ends = np.array([0.0, drive.spec.rate * turns * _TURN])
     shafts = [one.law for one in drive.moved.values() if not one.along]
     found = [float(np.diff(np.asarray(law(ends, 0).c[0]))[0]) for law in shafts]
-    return all(abs(math.remainder(end, _TURN)) < _WHOLE * turns for end in found)
+    # the shaft of a cam in space is not among what it moves
+    return all(abs(math.remainder(end, _TURN)) < _WHOLE * turns for end in (ends[1], *found))
 
 
 def _repeats(drive: PlacedDrive, q: Array, period: float) -> bool:
-    """Return whether a slide is at the same places a period later."""
-    both = np.stack([q, q + period])
-    places = np.asarray([one.law(both, 0).c[0] for one in drive.moved.values()])
+    """Return whether a slide or a plate is at the same places a period later."""
+    places = drive.own(np.stack([q, q + period]))
     allowed = _WHOLE * (period / _TURN) * (1.0 + np.abs(places).max())
-    return bool(np.ptp(places, axis=1).max() <= allowed)
+    return bool(np.ptp(places, axis=0).max() <= allowed)
 
 
 def _demand_smooth(drives: Sequence[PlacedDrive]) -> None:
-    """Refuse slides whose formulas have no place in the master's range, or jump there."""
+    """Refuse slides and plates whose formulas have no place in the master's range, or jump there."""
     whole = drives[0].closed and drives[0].spec.span is None
     ends = (0.0, _TURN) if whole else _part_of(drives[0])
     q = np.linspace(*ends, _FORMULA)
@@ -219,7 +223,7 @@ def _demand_smooth(drives: Sequence[PlacedDrive]) -> None:
         if drive.spec.slide is None:
             continue
         with np.errstate(all="ignore"):
-            found = drive.moved["slide"].law(q, 3).derivatives()
+            found = drive.place(q, 3).derivatives()
         bad = ~np.all([np.isfinite(one + 0.0 * q) for one in found], axis=0)
         bad |= np.abs(found[0] + 0.0 * q) > LONGEST
         if bad.any():
@@ -229,7 +233,25 @@ def _demand_smooth(drives: Sequence[PlacedDrive]) -> None:
                 where=f"drive[{number}].slide",
             )
         try:
-            drive.cells_in(*ends)
+            drive.turns_in(*ends)
         except InfeasibleError as error:
             what, where = f"{error.what} at {error.where}", f"drive[{number}].slide"
             raise InfeasibleError(what, where=where, nearest=error.nearest) from error
+    _demand_on_plates(drives, ends)
+
+
+def _demand_on_plates(drives: Sequence[PlacedDrive], part: tuple[float, float]) -> None:
+    """Refuse plates that a range of the master takes beyond their travel."""
+    for number, drive in enumerate(drives):
+        if drive.spec.slide is None or drive.result is None:
+            continue
+        q, places = drive.turns_in(*part)
+        beyond = np.maximum(-places, places - drive.period)
+        worst = int(beyond.argmax())
+        if beyond[worst] > ROUNDING * drive.period:
+            at, angle = formatted(places[worst], 6), formatted(math.degrees(q[worst]), 6)
+            raise InfeasibleError(
+                f"the plate would be at {at} mm at {angle} deg, beyond its travel",
+                where=f"drive[{number}].slide",
+                nearest=f"places from 0 to {formatted(drive.period)} mm",
+            )

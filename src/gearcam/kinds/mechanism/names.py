@@ -108,9 +108,10 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     faults += [fault for uses in asked for fault in _twice(uses, {})]
     faults += _twice([*given(tables), *faulty], names)
     whole = not _unread(found) and all(one.name for one in faulty)
+    missing = {f"{one.name}.shaft": one.shaftless for one in tables.get("drive", ())}
     for one in needed(tables):
         if one.name in names or (whole and _told_of(one.name, names)):
-            faults += _unsuitable(one, names)
+            faults += _unsuitable(one, names, missing.get(one.name, ""))
     yield from faults
     if not (faults or found.faults):
         yield from _unreached(tables)
@@ -196,8 +197,8 @@ def _suits(one: NameUse, sort: str) -> bool:
     return one.sort in sort.split(" or ")
 
 
-def _unsuitable(one: NameUse, names: Mapping[str, NameUse]) -> Iterator[Fault]:
-    """Yield that nothing has a name that is needed, or something of another sort."""
+def _unsuitable(one: NameUse, names: Mapping[str, NameUse], why: str) -> Iterator[Fault]:
+    """Yield that nothing has a name that is needed, and `why`, or something of another sort."""
     other = names.get(one.name)
     if other is not None and (other.sort == Sort.ANY or _suits(other, one.sort)):
         return
@@ -205,7 +206,7 @@ def _unsuitable(one: NameUse, names: Mapping[str, NameUse]) -> Iterator[Fault]:
     fits = sorted(name for name, use in others if _suits(use, one.sort))
     allowed = f"a {one.sort}: {', '.join(fits)}" if fits else f"the name of a {one.sort}"
     if other is None:
-        what, hint = ": nothing has this name", did_you_mean(one.name, fits)
+        what, hint = f": {why or 'nothing has this name'}", did_you_mean(one.name, fits)
     else:
         what, hint = " moves" if one.sort == STANDING else f" is a {other.sort}", ""
     yield Fault(one.path, f"{show(one.name)}{what}", one.name, allowed, hint)

@@ -1,8 +1,7 @@
-"""What the drives of a mechanism move: shafts and slides as functions of the master's angle.
+"""The drives of a mechanism in the machine: what they move as functions of the master's angle.
 
-A pair stands as assembled: wheel 1 turns by -phi1 about the origin, wheel 2 by phi2 about (A, 0); a
-ring turns by -phi2. A rack moves along -y. A cam turns counter-clockwise by theta about the origin,
-or clockwise; its follower is lifted along its guide, or turns about its pivot.
+The *place* of a drive is the angle of its driver, which is in proportion to the master's; of a
+plate or a slide it is given by a formula in the master's angle.
 """
 
 from __future__ import annotations
@@ -20,13 +19,15 @@ from gearcam.base.display import ShortRepr
 from gearcam.base.numerals import formatted
 from gearcam.base.tolerances import DEFAULT
 from gearcam.kinds.mechanism.keys import center_of, way_of
+from gearcam.kinds.mechanism.moved import Moved, linear, moved_by
 from gearcam.linkages.elements import GivenMotion, GuideLine, Law, MemberPoint
 from gearcam.numeric.arrays import Array
-from gearcam.numeric.jets import Jet
+from gearcam.numeric.jets import Jet, composed
+from gearcam.numeric.piecewise import extremes
+from gearcam.numeric.roots import bracketed_root
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.drives import MachineDrive
-    from gearcam.laws.displacement import Displacement
     from gearcam.linkages.elements import Element
 
 _TURN: Final = 2.0 * math.pi
@@ -35,120 +36,13 @@ _SIDE: Final = 4.0 * float(np.finfo(float).eps)
 """Distance beside a knot, as a share of the angle, that rounding does not take away."""
 
 _ROUNDED: Final = 1e-12
-"""How far from a knot rounding may leave an angle, rad."""
+"""How far from a knot rounding may leave an angle, rad; of a travel as its share of a turn."""
 
 _CELLS: Final = 16
 """Cells of a turn of an even shaft: what turns with it has few harmonics."""
 
 _NAMES: Final = ("the place", "its velocity", "its acceleration", "its jerk")
 """What a formula of a slide gives, for messages."""
-
-
-@dataclass(frozen=True)
-class Moved(ShortRepr):
-    """One thing that a drive moves, in the drive's frame.
-
-    Parameters
-    ----------
-    law : callable
-        ``law(x, order) -> Jet`` over the drive's own angle: its turn, rad, or its place, mm.
-    at : complex, mm
-        Where its shaft stands, or the zero of its places.
-    along : complex
-        Direction of its way; 0 for a shaft.
-    arm : float, rad
-        Direction of the arm of an oscillating follower at zero lift; nan if there is none.
-    """
-
-    law: Law
-    at: complex = 0j
-    along: complex = 0j
-    arm: float = math.nan
-
-
-def linear(factor: float, constant: float = 0.0) -> Law:
-    """Return the law ``factor*x + constant``."""
-
-    def law(x: Array, order: int) -> Jet:
-        return Jet.variable(x, order) * factor + constant
-
-    return law
-
-
-def displaced(by: Displacement, factor: float, constant: float = 0.0) -> Law:
-    """Return the law ``factor*y(x) + constant`` of a displacement y.
-
-    Parameters
-    ----------
-    by : Displacement
-        A ratio law or a program of lift.
-    factor, constant : float
-        In the units of its values.
-    """
-
-    def law(x: Array, order: int) -> Jet:
-        found = by.derivatives(x, order)
-        scaled = [factor * value / math.factorial(k) for k, value in enumerate(found)]
-        return Jet([scaled[0] + constant, *scaled[1:]])
-
-    return law
-
-
-def moved_by(drive: MachineDrive, result: Any) -> dict[str, Moved]:
-    """Return what a drive moves.
-
-    Parameters
-    ----------
-    drive : MachineDrive
-        Its table.
-    result : GearPairResult, CamResult or None
-        Of the pair or the cam.
-
-    Returns
-    -------
-    dict of str to Moved
-        By the words of `MachineDrive.shafts`.
-    """
-    if drive.pair is not None:
-        return _of_pair(result)
-    if drive.cam is not None:
-        return _of_cam(result)
-    if drive.slide is not None:
-        return {"slide": Moved(_formula(drive.slide), 0j, 1 + 0j)}
-    return {"shaft": Moved(linear(1.0))}
-
-
-def _of_pair(result: Any) -> dict[str, Moved]:
-    pair = result.pair
-    law, distance = pair.law, pair.center_distance
-    driver = Moved(linear(-1.0))
-    if pair.on_rack:  # its law is the travel over the size that the module gives
-        return {"wheel1": driver, "rack": Moved(displaced(law, -distance), 0j, 1j)}
-    inside = result.design.pair.type == "internal"
-    side, center = (-1.0, -distance) if inside else (1.0, distance)
-    return {"wheel1": driver, "wheel2": Moved(displaced(law, side), complex(center))}
-
-
-def _of_cam(result: Any) -> dict[str, Moved]:
-    follower = result.cam.motions[0].follower
-    program, side = result.program, -1.0 if result.design.cam.rotation == "cw" else 1.0
-    shaft = Moved(linear(side))
-    turn, shift = (
-        float(one[0].real) + 1j * float(one[0].imag) for one in follower.moved(np.ones(1))
-    )
-    seen = (lambda z: z) if side > 0.0 else (lambda z: -z.conjugate())
-    if not follower.angular:
-        end = complex(follower.centre(np.array([follower.start]))[0]) if follower.has_centre else 0j
-        return {"shaft": shaft, "follower": Moved(displaced(program, 1.0), seen(end), seen(shift))}
-    spin = turn.real
-    pivot = shift / (1.0 - cmath.exp(1j * spin))
-    arm = math.nan
-    if follower.has_centre:
-        arm = cmath.phase(seen(complex(follower.centre(np.array([follower.start]))[0]) - pivot))
-    return {
-        "shaft": shaft,
-        "follower": Moved(displaced(program, side * spin), seen(pivot), arm=arm),
-    }
 
 
 def _formula(text: str) -> Law:
@@ -190,15 +84,15 @@ class PlacedDrive(ShortRepr):
         Its table.
     moved : dict of str to Moved
         What it moves.
-    knots : (k,) array, rad
-        Places at which its laws are not smooth, over its own angle.
-    cells : (n,) array, rad
-        Ends of the cells in which expansions resolve its laws, over its own angle; those of a
+    knots : (k,) array, rad or mm
+        Its places at which its laws are not smooth.
+    cells : (n,) array, rad or mm
+        Ends of the cells in which expansions resolve its laws, at its own places; those of a
         formula of a slide depend on the range (see `cells_in`).
-    period : float, rad
-        After which they repeat; of an open one the end of its range.
+    period : float, rad or mm
+        After which they repeat; of an open one the end of its range, of a plate its travel.
     closed : bool
-        Whether it turns all the way.
+        Whether it moves on with a master that turns all the way.
     result : Result, optional
         Of the pair or the cam.
     """
@@ -232,8 +126,9 @@ class PlacedDrive(ShortRepr):
         """
         moved = {}
         for word, one in other.moved.items():
-            law = self.moved[word].law if word in self.moved else _evenly(one.law, other)
-            moved[word] = replace(one, law=law)
+            own = self.moved.get(word)
+            law = own.law if own else _evenly(one.law, other)
+            moved[word] = replace(one, law=law, sense=own.sense if own else one.sense)
         if self.result is not None:
             return replace(self, spec=other.spec, moved=moved)
         high = other.period if _steady(other) else _furthest(other)
@@ -260,36 +155,40 @@ class PlacedDrive(ShortRepr):
                     yield MemberPoint(center_of(name), self.machine(moved.at))
 
     def own(self, q: Array) -> Array:
-        """Return its own angles, rad.
+        """Return its own places, rad or mm.
 
         Parameters
         ----------
         q : (n,) array, rad
             The master's angles.
         """
-        return self.spec.rate * q + self.spec.phase
+        return np.asarray(self.place(q, 0).c[0])
+
+    def place(self, q: Array, order: int) -> Jet:
+        """Return its own places, rad or mm, with derivatives (see `own`)."""
+        if self.spec.slide is not None:
+            return _formula(self.spec.slide)(q, order)
+        return Jet.variable(q, order) * self.spec.rate + self.spec.phase
 
     def _over_master(self, law: Law, factor: float, master: bool) -> Law:
-        ratio = self.spec.rate
-
         def over(q: Array, order: int) -> Jet:
-            x = q if master else self._beside_knots(self.own(q), ratio)
-            found = law(x, order)
-            return Jet([factor * value * ratio**k for k, value in enumerate(found.c)])
+            place = self.place(q, order)
+            x = place.c[0] if master else self._beside_knots(place)
+            return composed(place, law(np.asarray(x), order).c) * factor
 
-        if self.spec.slide is not None:  # its formula is one of the master's angle
-            return law
         return over
 
-    def _beside_knots(self, x: Array, ratio: float) -> Array:
-        """Return own angles with those at knots, but for rounding, on the side that comes later."""
-        if self.result is None or not self.closed:
+    def _beside_knots(self, place: Jet) -> Array:
+        """Return own places with those at knots, but for rounding, on the side that comes later."""
+        x = np.asarray(place.c[0])
+        if self.result is None or not (self.closed and self.knots.size and place.order):
             return x
         within = x % self.period
         nearest = np.abs(within[..., None] - self.knots).argmin(axis=-1)
         at = x - within + self.knots[nearest]
-        late = at + math.copysign(_SIDE, ratio) * (np.abs(at) + self.period)
-        return np.where(np.abs(within - self.knots[nearest]) <= _ROUNDED, late, x)
+        late = at + np.copysign(_SIDE, place.c[1]) * (np.abs(at) + self.period)
+        rounded = _ROUNDED * self.period / _TURN
+        return np.where(np.abs(within - self.knots[nearest]) <= rounded, late, x)
 
     def knots_in(self, low: float, high: float) -> Array:
         """Return where its laws are not smooth.
@@ -324,9 +223,10 @@ class PlacedDrive(ShortRepr):
         InfeasibleError
             If a formula is not smooth, or not finite, between them.
         """
+        cells = np.array([low, high])
         if self.spec.slide is not None:
-            return _formula_cells(self.spec.slide, low, high)
-        return np.concatenate([[low], self._within(self.cells, low, high), [high]])
+            cells = _formula_cells(self.spec.slide, low, high)
+        return np.union1d(cells, self._within(self.cells, low, high))
 
     @cached_property
     def places(self) -> Array:
@@ -338,17 +238,50 @@ class PlacedDrive(ShortRepr):
         ends = self.cells_in(low, high)
         return np.union1d(ends, 0.5 * (ends[1:] + ends[:-1]))
 
+    def turns_in(self, low: float, high: float) -> tuple[Array, Array]:
+        """Return where a slide or a plate turns back, and the ends (see `cells_in`).
+
+        Returns
+        -------
+        q, places : (n,) arrays, rad and mm
+            The master's angles, rising, and the places there; between them it goes one way.
+        """
+
+        def function(q: Array) -> list[Array]:
+            return self.place(q, 1).derivatives()
+
+        return extremes(function, _formula_cells(self.spec.slide or "", low, high), cells=True)
+
     def _within(self, places: Array, low: float, high: float) -> Array:
-        """Return where places of its own angle are in a range of the master's."""
-        ends = sorted(self.own(np.array([low, high])))
-        turns = range(math.floor(ends[0] / self.period), math.ceil(ends[1] / self.period) + 1)
-        every = [places + k * self.period for k in turns] if self.closed else [places]
-        found = (np.concatenate(every) - self.spec.phase) / self.spec.rate
+        """Return where places of its own are in a range of the master's, inside it."""
+        if self.spec.slide is not None:
+            found = self._passed(places, low, high)
+        else:
+            ends = sorted(self.own(np.array([low, high])))
+            turns = range(math.floor(ends[0] / self.period), math.ceil(ends[1] / self.period) + 1)
+            every = [places + k * self.period for k in turns] if self.closed else [places]
+            found = (np.concatenate(every) - self.spec.phase) / self.spec.rate
         return np.unique(found[(found > low) & (found < high)])
+
+    def _passed(self, places: Array, low: float, high: float) -> Array:
+        """Return where a plate passes places of its own, or turns back at them."""
+        if not places.size:
+            return places
+        q, values = self.turns_in(low, high)
+        off = values[:, None] - places
+        off[np.abs(off) <= _ROUNDED * self.period / _TURN] = 0.0
+        row, which = np.nonzero(off[:-1] * off[1:] < 0.0)
+
+        def beyond(x: Array) -> Array:
+            return self.own(x) - places[which]
+
+        ends = q[row], q[row + 1]
+        roots = bracketed_root(beyond, *ends, _SIDE * max(abs(low), abs(high)))
+        return np.append(q[(off == 0.0).any(axis=1)], roots)
 
 
 def placed(spec: MachineDrive, build: Callable[[Any], Any]) -> PlacedDrive:
-    """Return a drive with the laws of its pair or cam.
+    """Return a drive with the laws of its pair or its cam.
 
     Parameters
     ----------
@@ -367,6 +300,9 @@ def placed(spec: MachineDrive, build: Callable[[Any], Any]) -> PlacedDrive:
         If the pair or the cam is impossible.
     """
     nested = spec.pair or spec.cam
+    if nested is None and spec.slide is not None:
+        none = np.array([])
+        return PlacedDrive(spec, moved_by(spec, None), none, none, _TURN, closed=True)
     if nested is None:
         low, high = spec.span or (0.0, _TURN)
         ends = np.array([low, high])
@@ -376,7 +312,10 @@ def placed(spec: MachineDrive, build: Callable[[Any], Any]) -> PlacedDrive:
     by = result.pair.law if spec.pair is not None else result.program
     cells = np.union1d(by.knots, by.driven.knots if spec.pair is not None else by.cuts)
     knots, cells = (one[(one >= 0.0) & (one <= by.period)] for one in (by.knots, cells))
-    moved, end, closed = moved_by(spec, result), float(by.period), by.closed
+    moved, end = moved_by(spec, result), float(by.period)
+    closed = by.closed
+    if spec.slide is not None:  # it may turn back at the ends of the plate, but not pass them
+        knots, cells, closed = knots[1:-1], cells[1:-1], True
     if spec.pair is not None and result.pair.on_rack:  # the wheel turns as far as it has teeth
         end, closed = float(result.centrode_angles(2)[-1]), False
         turns = by.period * np.arange(math.ceil(end / by.period))

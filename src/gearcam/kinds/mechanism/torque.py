@@ -19,6 +19,7 @@ from gearcam.base.numerals import formatted
 from gearcam.base.quantities import TORQUE as NEWTON_METRES
 from gearcam.base.quantities import Param
 from gearcam.kinds.mechanism.asked import DEG
+from gearcam.kinds.mechanism.cam_contact import one_sided
 from gearcam.kinds.mechanism.loaded import BODY, work_of
 from gearcam.kinds.mechanism.names import acting, several, tables_of
 from gearcam.kinds.mechanism.parts import ACTIONS
@@ -61,9 +62,6 @@ CHECKS: Final = "torque of a mechanism"
 
 _LESS: Final = 0.99
 """Share of the driver's moment that is less than it."""
-
-ONE_WALL: Final = "disc"
-"""Form of the cams with one wall."""
 
 EVEN: Final = "even_shaft"
 """What a mechanism behind a pair is compared with if the design does not say."""
@@ -112,8 +110,9 @@ class ShaftLoad(NamedTuple):
         N m, or N.
     meaning : str
         In words.
-    loose : str
-        Name of the drive if it is a cam with one wall, off which its follower can be lifted.
+    loose : float
+        Of a cam with one wall, off which its follower can be lifted, the side to which it pushes;
+        0 of others.
     drive : str
         Name of the drive.
     """
@@ -121,7 +120,7 @@ class ShaftLoad(NamedTuple):
     column: str
     values: Array
     meaning: str
-    loose: str = ""
+    loose: float = 0.0
     drive: str = ""
 
     def of(self, drive: str) -> ShaftLoad:
@@ -339,15 +338,15 @@ def _of_pair(drive: PlacedDrive, work: VirtualWork, q: Array) -> Iterator[ShaftL
 
 
 def _of_cam(drive: PlacedDrive, work: VirtualWork, q: Array) -> Iterator[ShaftLoad]:
-    name, follower = f"{drive.spec.name}.follower", drive.moved["follower"]
-    own = work.on({name: _lifts(drive)}, q)
-    form = getattr(getattr(drive.spec.cam, "cam", None), "form", "")
-    loose = drive.spec.name if form == ONE_WALL else ""
-    if follower.along:
+    word, moved = next(reversed(drive.moved.items()))
+    side = -1.0 if drive.spec.mirror and not moved.along else 1.0
+    own = work.on({f"{drive.spec.name}.{word}": side * moved.sense}, q)
+    loose = one_sided(drive.result.design)
+    if moved.along:
         yield ShaftLoad("follower_force_n", own, "force of the follower in its lift", loose)
     else:
-        meaning = "torque of the follower in its lift"
-        yield ShaftLoad("follower_torque_nm", _NM * own, meaning, loose)
+        meaning = f"torque of the {word} in its {'index' if word == 'turret' else 'lift'}"
+        yield ShaftLoad(f"{word}_torque_nm", _NM * own, meaning, loose)
 
 
 def _ends(
@@ -383,22 +382,12 @@ def _pulls(
     """Yield the most with which the mechanism pulls each loose follower off its cam."""
     names = [one.name for one in result.design.drive]
     for one in shafts:
-        least, largest = ends[one.column]
-        if one.loose and -least.value > _NOISE * abs(largest.value):
+        off, on = ends[one.column] if one.loose > 0.0 else reversed(ends[one.column])
+        pull = -one.loose * off.value
+        if pull > _NOISE * abs(on.value):
             unit = "N" if one.column.endswith("_n") else "N m"
-            cam = f"drive[{names.index(one.loose)}].cam"
-            yield Pull(cam, -least.value, unit, result.place(least.place))
-
-
-def _lifts(drive: PlacedDrive) -> float:
-    """Return +1 or -1: how the follower's place or turn in the machine goes when it is lifted."""
-    if drive.moved["follower"].along:
-        return 1.0
-    x = np.linspace(0.0, drive.period, 721)
-    lift = drive.result.program.derivatives(x, 0)[0]
-    turn = np.asarray(drive.moved["follower"].law(x, 0).c[0])
-    rise = turn[int(lift.argmax())] - turn[int(lift.argmin())]
-    return math.copysign(1.0, float(rise)) * (-1.0 if drive.spec.mirror else 1.0)
+            cam = f"drive[{names.index(one.drive)}].cam"
+            yield Pull(cam, pull, unit, result.place(off.place))
 
 
 def _largest(work: VirtualWork) -> Peak:

@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from gearcam.kinds.mechanism.placed import Moved, PlacedDrive
+    from gearcam.kinds.mechanism.moved import Moved
+    from gearcam.kinds.mechanism.placed import PlacedDrive
 
 
 class Mover(NamedTuple):
@@ -48,7 +49,7 @@ class Setting:
         return self.movers[name].drive.machine(self.movers[name].moved.at)
 
     def drawn(self, name: str) -> str:
-        """Return the word for a wheel, a rack, a cam or its follower that a drive draws.
+        """Return the word for a wheel, a rack, a plate, a cam or its follower that a drive draws.
 
         Parameters
         ----------
@@ -56,4 +57,7 @@ class Setting:
             Of the shaft or slide; empty is returned for any other.
         """
         mover = self.movers.get(name)
-        return "" if mover is None or mover.drive.result is None else mover.word
+        if mover is None or mover.drive.result is None:
+            return ""
+        # of a follower along a cylinder cam only the roller is drawn
+        return "" if mover.drive.spec.in_space and mover.moved.along else mover.word
