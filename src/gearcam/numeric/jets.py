@@ -348,14 +348,14 @@ def harmonics(x: Jet, cosines: Sequence[float] | Array, sines: Sequence[float] |
     return composed(x, about.reshape(len(orders), *np.shape(x.c[0])))
 
 
-def composed(x: Jet, about: Array | Sequence[Array]) -> Jet:
+def composed(x: Jet, about: Array | Sequence[Value]) -> Jet:
     """Return f(x) of a jet x from the Taylor coefficients of f at its points.
 
     Parameters
     ----------
     x : Jet
         Of arrays.
-    about : sequence of arrays
+    about : sequence of arrays or floats
         Row k is the k-th derivative of f over k!, up to the order of `x`.
 
     Returns

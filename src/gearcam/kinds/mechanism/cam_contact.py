@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from gearcam.mechanics.follower_loads import DrivenMotion
 
@@ -16,14 +16,6 @@ if TYPE_CHECKING:
 
 _KILO: Final = 1e3
 """N mm of a N m."""
-
-_ONE_SIDED: Final = {"disc": 1.0, "lower": 1.0, "upper": -1.0}
-"""The side to which cams with one wall push, by their form or their wall: 1 in the lift."""
-
-
-def one_sided(design: Any) -> float:
-    """Return the side to which alone a cam of a `design` pushes: 1 in the lift; 0 if to both."""
-    return _ONE_SIDED.get(getattr(design.cam, "walls", design.cam.form), 0.0)
 
 
 def contact_forces(

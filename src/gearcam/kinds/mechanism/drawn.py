@@ -2,8 +2,8 @@
 
 The drawings are the machine at an angle of its master, and the paths of its points. Members are
 symbols, wheels and cams are those of the pair or the cam itself, moved as the linkage takes them:
-by the drive's laws; cams in space are outlines of their blanks. Layers begin with the name of the point whose PATH is on them, or with the
-wheel.
+by the drive's laws; cams in space are outlines of their blanks. Layers begin with the name of the
+point whose PATH is on them, or with the wheel.
 
 The distance of a path from its chord is measured at three angles inside the chord. It falls with
 the square of the step: this gives the number of chords that one is divided into.

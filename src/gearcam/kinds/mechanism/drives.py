@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 _DENOMINATOR: Final = 12
 """Largest denominator of a drive's ratio: turns of the master in a cycle."""
 
-_SUCH: Final = '"50*(1 - cos(q))"'
-"""A formula of the place of a plate."""
+_SUCH: Final = 'the plate\'s place in mm as a formula in q, such as "50*(1 - cos(q))"'
+"""What moves a plate."""
 
 _SAME_RATIO: Final = 1e-6
 """Difference of a ratio from a fraction of which it is the decimals."""
@@ -92,7 +92,8 @@ class MachineDrive(WrittenDrive):
     """A drive of a mechanism; the first one is the master, whose angle all motion is given over.
 
     The wheels of a pair, the follower of a cam or a slide move as their designs say; an even drive
-    turns with the master, and a plate slides by a formula. A drive stands in its own frame, which may be moved in the machine.
+    turns with the master, and a plate slides by a formula. A drive stands in its own frame, which
+    may be moved in the machine.
 
     Examples
     --------
@@ -122,8 +123,8 @@ class MachineDrive(WrittenDrive):
         TEXT,
         default=None,
         example="20*sin(q)",
-        doc="place of a slide, or of a cam of the form translating, mm, as a formula in the master's "
-        "angle q, rad",
+        doc="place of a slide, or of a cam of the form translating, mm, as a formula in the "
+        "master's angle q, rad",
     )
     speed: float | None = param(
         RPM, default=None, gt=0, le=1e6, example=180, doc="mean speed of the driver, of the master"
@@ -149,7 +150,16 @@ class MachineDrive(WrittenDrive):
         default=False, doc="whether it is reflected in its x axis: all turns are reversed"
     )
 
-    rules = (exactly_one("pair", "cam", "even", "slide", both=("cam", "slide")),)
+    rules = (
+        exactly_one(
+            "pair",
+            "cam",
+            "even",
+            "slide",
+            note="slide also beside a cam of the form translating",
+            both=("cam", "slide"),
+        ),
+    )
 
     @property
     def fraction(self) -> tuple[int, int]:
@@ -182,7 +192,7 @@ class MachineDrive(WrittenDrive):
         if self.cam is not None and self.slides == (self.slide is None):
             what, allowed = "is not of a cam that turns", "a cam of the form translating"
             if self.slides:
-                what, allowed = "is missing: it moves the plate", f"such as {_SUCH}"
+                what, allowed = "is missing: a plate moves by it", _SUCH
             yield "slide", None, what, allowed
         if self.slide is not None:
             from gearcam.laws.formula import formula_problems
@@ -252,7 +262,6 @@ def problems(found: Examined) -> Iterator[Fault]:
         The valid tables.
     """
     drives, compared = (found.parts.get(title, ()) for title in ("drive", "compare"))
-    yield from _sliding(compared)
     for number, one in enumerate(drives):
         yield from _without_effect(number, one)
     if drives and drives[0].slide is not None:
@@ -263,14 +272,6 @@ def problems(found: Examined) -> Iterator[Fault]:
     if drives and is_read("drive", found):
         for number, one in enumerate(compared):
             yield from _not_comparable(number, one, drives[0])
-
-
-def _sliding(compared: tuple[CompareSpec, ...]) -> Iterator[Fault]:
-    """Yield plates to compare, which have no angle over which motion could be given."""
-    for number, one in enumerate(compared):
-        if one.slides:
-            what = f"the cam {show(getattr(one.cam, 'name', ''))} slides: it has no angle"
-            yield Fault(("compare", number, "cam"), what, None, "a cam that turns")
 
 
 def _without_effect(number: int, one: MachineDrive) -> Iterator[Fault]:
@@ -291,6 +292,10 @@ def _not_comparable(number: int, one: CompareSpec, master: MachineDrive) -> Iter
         if master.pair is None:
             what = "cannot replace the first drive, which is not a pair"
             yield Fault(("compare", number, "even"), what, True, "where a pair is the master")
+        return
+    if one.slides:
+        what = f"the cam {show(getattr(one.cam, 'name', ''))} slides: it has no angle"
+        yield Fault(("compare", number, "cam"), what, None, "a cam that turns")
         return
     own = MachineDrive(name=master.name, pair=one.pair, cam=one.cam)
     if one.key and own.shafts != master.shafts:

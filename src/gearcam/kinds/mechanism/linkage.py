@@ -215,7 +215,7 @@ def _repeats(drive: PlacedDrive, q: Array, period: float) -> bool:
 
 
 def _demand_smooth(drives: Sequence[PlacedDrive]) -> None:
-    """Refuse slides and plates whose formulas have no place in the master's range, or jump there."""
+    """Refuse slides and plates whose formulas have no place in the master's range, or jump."""
     whole = drives[0].closed and drives[0].spec.span is None
     ends = (0.0, _TURN) if whole else _part_of(drives[0])
     q = np.linspace(*ends, _FORMULA)

@@ -19,7 +19,6 @@ from gearcam.base.numerals import formatted
 from gearcam.base.quantities import TORQUE as NEWTON_METRES
 from gearcam.base.quantities import Param
 from gearcam.kinds.mechanism.asked import DEG
-from gearcam.kinds.mechanism.cam_contact import one_sided
 from gearcam.kinds.mechanism.loaded import BODY, work_of
 from gearcam.kinds.mechanism.names import acting, several, tables_of
 from gearcam.kinds.mechanism.parts import ACTIONS
@@ -62,6 +61,9 @@ CHECKS: Final = "torque of a mechanism"
 
 _LESS: Final = 0.99
 """Share of the driver's moment that is less than it."""
+
+_ONE_SIDED: Final = {"disc": 1.0, "lower": 1.0, "upper": -1.0}
+"""The side to which cams with one wall push, by their form or their wall: 1 in the lift."""
 
 EVEN: Final = "even_shaft"
 """What a mechanism behind a pair is compared with if the design does not say."""
@@ -341,7 +343,8 @@ def _of_cam(drive: PlacedDrive, work: VirtualWork, q: Array) -> Iterator[ShaftLo
     word, moved = next(reversed(drive.moved.items()))
     side = -1.0 if drive.spec.mirror and not moved.along else 1.0
     own = work.on({f"{drive.spec.name}.{word}": side * moved.sense}, q)
-    loose = one_sided(drive.result.design)
+    cam = drive.result.design.cam
+    loose = _ONE_SIDED.get(getattr(cam, "walls", cam.form), 0.0)
     if moved.along:
         yield ShaftLoad("follower_force_n", own, "force of the follower in its lift", loose)
     else:

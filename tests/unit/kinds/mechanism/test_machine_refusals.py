@@ -66,6 +66,7 @@ FLAT = gc.load(PROFILES / "valve_lever.toml").to_dict()
 LIFTED = gc.load(PROFILES / "lathe_slide.toml").to_dict()
 OPEN = gc.load(PROFILES / "log_spiral.toml").to_dict()
 
+GLOBOID = gc.load(PROFILES / "globoidal_indexer.toml").to_dict()
 DRUM = {**gc.load(PROFILES / "cylinder_cam.toml").to_dict(), "kind": "cam"}
 
 Document = dict[str, Any]
@@ -201,9 +202,53 @@ WRONG: dict[str, tuple[Document, str, str, str, str]] = {
         "drive[0].slide", '"20*sin(q)" has no angle over which the motion could be given',
         "a first drive with pair, cam or even = true, and the slide behind it", "",
     ),
-    "cam that slides": (
-        longer(drive=[{"name": "plate", "cam": PLATE}]), "drive[1].cam",
-        'the cam "translating_cam" slides: it has no shaft', "a cam that turns", "",
+    "plate without its place": (
+        longer(drive=[{"name": "plate", "cam": PLATE}]), "drive[1].slide",
+        "is missing: a plate moves by it",
+        'the plate\'s place in mm as a formula in q, such as "50*(1 - cos(q))"', "",
+    ),
+    "place of a cam that turns": (
+        longer(drive=[{"name": "drum", "cam": DRUM, "slide": "q"}]), "drive[1].slide",
+        '"q": is not of a cam that turns', "a cam of the form translating", "",
+    ),
+    "place of an even shaft": (
+        longer(drive=[{"name": "even", "even": True, "slide": "q"}]), "drive[1].slide",
+        '"q": is given beside even = true', "exactly one of pair, cam, even and slide; slide also beside a cam of the form translating",
+        "",
+    ),
+    "plate as the master": (
+        {**BASE, "drive": [{"name": "motor", "cam": PLATE, "slide": "q"}], "crank": [],
+         "dyad": [], "point": [], "output": {"files": ["csv"]}},
+        "drive[0].slide", '"q" has no angle over which the motion could be given',
+        "a first drive with pair, cam or even = true, and the plate behind it", "",
+    ),
+    "plate to compare": (
+        {**longer(compare=[{"name": "x", "cam": PLATE}]),
+         "drive": [{"name": "motor", "cam": LIFTED}],
+         "crank": [], "dyad": [], "point": [], "output": {"files": ["csv"]}},
+        "compare[0].cam", 'the cam "translating_cam" slides: it has no angle',
+        "a cam that turns", "",
+    ),
+    "ratio of a plate": (
+        longer(drive=[{"name": "plate", "cam": PLATE, "slide": "q", "ratio": 2}]),
+        "drive[1].ratio", "has no effect: its formula is in the master's q", "1", "",
+    ),
+    "crank on the shaft of a cam in space": (
+        longer(drive=[{"name": "drum", "cam": DRUM}],
+               crank=[{"name": "k", "on": "drum.shaft", "joint": "K", "length_mm": 40}]),
+        "crank[1].on", '"drum.shaft": it lies in the plane, across which all shafts stand',
+        "a shaft: motor, motor.shaft", "",
+    ),
+    "crank on the shaft of a plate": (
+        longer(drive=[{"name": "p", "cam": PLATE, "slide": "q"}],
+               crank=[{"name": "k", "on": "p.shaft", "joint": "K", "length_mm": 40}]),
+        "crank[1].on", '"p.shaft": a plate slides: it has no shaft',
+        "a shaft: motor, motor.shaft", "",
+    ),
+    "slide on a turret": (
+        longer(drive=[{"name": "g", "cam": GLOBOID}],
+               slide=[{"name": "z", "on": "g.turret", "joint": "Z"}]),
+        "slide[0].on", '"g.turret" is a shaft', "the name of a slide", "",
     ),
     "no driven length": (
         edited(("dyad", 1), {**SLIDER, "type": "RTRR", "to": "D", "lengths_mm": [9, 9]}),
@@ -231,11 +276,6 @@ WRONG: dict[str, tuple[Document, str, str, str, str]] = {
         longer(load=[{"on": "S", "force_n": 1, "from_deg": 370, "to_deg": 10}]),
         "load[0].to_deg", "10: is not above from_deg",
         "a later angle: 730 is the same place of the next turn", "",
-    ),
-    "cam in space": (
-        longer(drive=[{"name": "drum", "cam": DRUM}]), "drive[1].cam.cam.form",
-        '"cylinder" does not belong here',
-        '"disc", "groove", "conjugate", "yoke" or "translating"', "",
     ),
     "no number": (
         edited(("crank", 0, "length_mm"), -40), "crank[0].length_mm", "-40 is out of range",
