@@ -7,7 +7,6 @@ members are those of the file, shafts turn as the pair or the cam itself says.
 from __future__ import annotations
 
 import cmath
-import math
 from collections.abc import Iterator
 from typing import Any, Final
 
@@ -84,7 +83,8 @@ def _drives(result: MechanismResult) -> Doubts:
         if spec.pair is not None:
             wanted = _of_pair(drive.result, own, mirrored)
         elif spec.cam is not None:
-            wanted = _of_cam(drive.result, own % (2.0 * math.pi), mirrored)
+            places = drive.own(q) if spec.slide is not None else own
+            wanted = _of_cam(drive.result, places, mirrored)
         elif spec.even:
             wanted = {"shaft": mirrored * own}
         for word, values in wanted.items():
@@ -102,6 +102,8 @@ def _of_pair(result: Any, own: Array, mirrored: float) -> dict[str, Array]:
 
 def _of_cam(result: Any, own: Array, mirrored: float) -> dict[str, Array]:
     moved = result.motion(own)
+    if "turret_deg" in moved:
+        return {"turret": -mirrored * np.radians(moved["turret_deg"])}
     if "lift_mm" in moved:
         return {"follower": moved["lift_mm"]}
     del mirrored  # in which sense a follower swings is seen by its distance from the cam

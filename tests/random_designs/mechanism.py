@@ -10,12 +10,21 @@ import cmath
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, Final
 
 from random_designs.draw import Draw, short
 from random_designs.goals import seek
 from random_designs.law_draw import LawDraw
 from random_designs.laws import random_law
+from random_designs.mechanism_cams import (
+    IN_SPACE,
+    driven_by_plate,
+    driven_in_space,
+    drum_design,
+    globoid_design,
+    plate_design,
+)
 from random_designs.mechanism_loads import loaded
 from random_designs.mechanism_parts import (
     ALONG,
@@ -34,7 +43,7 @@ _EACH: Final = 24
 """Positions looked at in a turn of the master."""
 
 _MASTERS: Final = ("even", "pair", "swinging cam", "even", "lifting cam", "open pair", "range",
-                   "pair", "rack", "parallelogram")  # fmt: skip
+                   "pair", "rack", "parallelogram", *IN_SPACE)  # fmt: skip
 """What drives, which take turns."""
 
 _LAWS: Final = ("fourier", "limacon", "lobed", "phases", "multispeed", "formula", "bspline",
@@ -50,6 +59,9 @@ _SPARE: Final = (0.05, 0.6)
 
 _TOO_SHORT: Final = 0.04
 """Share of dyads that need not close."""
+
+_COMPARED: Final = ("pair", "open pair", "swinging cam", "lifting cam")
+"""Masters that are compared with others, beside cams in space."""
 
 _SHARES: Final = {"svg": 0.3, "dxf": 0.2, "report": 0.06}
 """Share of mechanisms with each kind of file, by its cost."""
@@ -184,7 +196,7 @@ def _cam_design(d: Draw, size: float, *, swings: bool) -> dict[str, Any]:
 
 
 @dataclass(frozen=True)
-class _Placed:
+class Placed:
     """Where a drive stands."""
 
     at: complex = 0j
@@ -202,7 +214,7 @@ class _Placed:
         return -1.0 if self.mirror else 1.0
 
 
-def _stands(m: Machine, drive: dict[str, Any], about: complex | None) -> _Placed:
+def _stands(m: Machine, drive: dict[str, Any], about: complex | None) -> Placed:
     """Place a drive somewhere, its frame turned and reflected in some designs."""
     d, at = m.d, 0j
     if about is not None:
@@ -217,10 +229,19 @@ def _stands(m: Machine, drive: dict[str, Any], about: complex | None) -> _Placed
         drive["turn_deg"] = turn
     if mirror:
         drive["mirror"] = True
-    return _Placed(at, math.radians(turn), mirror)
+    return Placed(at, math.radians(turn), mirror)
 
 
-def _driven_by_pair(m: Machine, q: list[float], drive: dict[str, Any], on: _Placed) -> None:
+def _frame(drive: dict[str, Any]) -> Placed:
+    """Return where a drive stands, by its table."""
+    return Placed(
+        complex(*drive.get("at_mm", (0, 0))),
+        math.radians(drive.get("turn_deg", 0)),
+        drive.get("mirror", False),
+    )
+
+
+def _driven_by_pair(m: Machine, q: list[float], drive: dict[str, Any], on: Placed) -> None:
     name, pair = drive["name"], drive["pair"]["pair"]
     z, law = pair["teeth"], drive["pair"]["law"]
     if law["type"] == "rack":
@@ -239,7 +260,7 @@ def _driven_by_pair(m: Machine, q: list[float], drive: dict[str, Any], on: _Plac
     m.shafts[f"{name}.wheel2"] = turns, on.machine(center), name
 
 
-def _driven_by_cam(m: Machine, q: list[float], drive: dict[str, Any], on: _Placed) -> None:
+def _driven_by_cam(m: Machine, q: list[float], drive: dict[str, Any], on: Placed) -> None:
     name, cam = drive["name"], drive["cam"]
     follower, prime = cam["follower"], cam["cam"]["prime_radius_mm"]
     side = -1.0 if cam["cam"].get("rotation") == "cw" else 1.0
@@ -260,6 +281,27 @@ def _driven_by_cam(m: Machine, q: list[float], drive: dict[str, Any], on: _Place
     m.arms[f"{name}.follower"] = cmath.phase(on.vector(cmath.exp(1j * direction)))
 
 
+_CAMS: Final[dict[str, Callable[[Draw, float], dict[str, Any]]]] = {
+    "swinging cam": partial(_cam_design, swings=True),
+    "lifting cam": partial(_cam_design, swings=False),
+    "swinging drum": partial(drum_design, swings=True),
+    "lifting drum": partial(drum_design, swings=False),
+    "globoid": globoid_design,
+    "swinging plate": partial(plate_design, swings=True),
+    "lifting plate": partial(plate_design, swings=False),
+}
+"""What returns the cam of a drive."""
+
+
+def _designed(m: Machine, how: str) -> dict[str, Any]:
+    """Return what a drive is, but for a slide, by its key."""
+    if how in ("pair", "open pair", "rack"):
+        distance = m.length(1.5, 3.0)
+        opened, rack = how == "open pair", how == "rack"
+        return {"pair": _pair_design(m.d, distance, opened=opened, rack=rack)}
+    return {"cam": _CAMS[how](m.d, m.size)} if how in _CAMS else {"even": True}
+
+
 def _driven(m: Machine, how: str, number: int, about: complex | None) -> None:
     """Add a drive: the master is number 0."""
     d, drive = m.d, m.add("drive", name=("motor", "second", "third")[number])
@@ -268,34 +310,38 @@ def _driven(m: Machine, how: str, number: int, about: complex | None) -> None:
         low, high = d.even(-90, 20), d.even(60, 300)
         drive["range_deg"] = [low, high]
         q = [math.radians(low + (high - low) * k / (m.count - 1)) for k in range(m.count)]
-    if how in ("pair", "open pair", "rack"):
-        distance = m.length(1.5, 3.0)
-        drive["pair"] = _pair_design(d, distance, opened=how == "open pair", rack=how == "rack")
-    elif how in ("swinging cam", "lifting cam"):
-        drive["cam"] = _cam_design(d, m.size, swings=how == "swinging cam")
-    elif how == "slide":
-        stroke, own = m.length(0.1, 0.3), d.whole(1, 2)
-        first = m.length(0.0, 1.0)
-        drive["slide"] = f"{first} + {stroke}*(1 - cos({own}*q))"
-        on = _stands(m, drive, about)
-        places = [first + stroke * (1 - math.cos(own * one)) for one in q]
-        for name in (drive["name"], f"{drive['name']}.slide"):
-            m.ways[name] = places, on.at, on.vector(ALONG)
+    if how == "slide":
+        _driven_by_formula(m, q, drive, about)
         return
-    else:
-        drive["even"] = True
-    if number:
+    drive |= _designed(m, how)
+    if number and not how.endswith("plate"):
         ratio = drive["ratio"] = d.pick([1, 1, 2, -1, 3, -2])
         phase = drive["phase_deg"] = d.even(-180, 180)
         q = [ratio * one + math.radians(phase) for one in q]
-    on = _Placed() if how == "parallelogram" else _stands(m, drive, about)
+    on = Placed() if how == "parallelogram" else _stands(m, drive, about)
     if "pair" in drive:
         _driven_by_pair(m, q, drive, on)
+    elif how.endswith("plate"):
+        driven_by_plate(m, q, drive, on)
+    elif how in IN_SPACE:
+        driven_in_space(m, q, drive, on)
     elif "cam" in drive:
         _driven_by_cam(m, q, drive, on)
     else:
         for name in (drive["name"], f"{drive['name']}.shaft"):
             m.shafts[name] = [on.side * one for one in q], on.at, drive["name"]
+
+
+def _driven_by_formula(
+    m: Machine, q: list[float], drive: dict[str, Any], about: complex | None
+) -> None:
+    stroke, own = m.length(0.1, 0.3), m.d.whole(1, 2)
+    first = m.length(0.0, 1.0)
+    drive["slide"] = f"{first} + {stroke}*(1 - cos({own}*q))"
+    on = _stands(m, drive, about)
+    places = [first + stroke * (1 - math.cos(own * one)) for one in q]
+    for name in (drive["name"], f"{drive['name']}.slide"):
+        m.ways[name] = places, on.at, on.vector(ALONG)
 
 
 def _drives(m: Machine, how: str) -> None:
@@ -312,19 +358,19 @@ def _drives(m: Machine, how: str) -> None:
         m.ways.clear()
         q = [TURN * k / _EACH for k in range(m.count)]
         drive = m.tables["drive"][0]
-        on = _Placed(
-            complex(*drive.get("at_mm", (0, 0))),
-            math.radians(drive.get("turn_deg", 0)),
-            drive.get("mirror", False),
-        )
-        _driven_by_pair(m, q, drive, on)
-    more = ("slide", "even", "slide", "swinging cam", "lifting cam", "slide")
+        _driven_by_pair(m, q, drive, _frame(drive))
+    if how == "globoid":
+        m.count = _EACH * m.tables["drive"][0]["cam"]["turret"]["stops"]
+        q = [TURN * k / _EACH for k in range(m.count)]
+        driven_in_space(m, q, m.tables["drive"][0], _frame(m.tables["drive"][0]))
+    more = ("slide", "even", "slide", "swinging cam", "lifting cam", "slide", "lifting plate",
+            "swinging plate", "lifting drum", "swinging drum")  # fmt: skip
     for number in (1, 2):
         if how != "parallelogram" and d.chance((0.0, 0.35, 0.2)[number]):
             _driven(m, d.pick(more), number, 0j)
     if d.chance(0.3) or how == "pair":
         m.tables["drive"][0]["speed_rpm"] = short(d.log(1, 1000))
-    if how in ("pair", "open pair", "swinging cam", "lifting cam") and d.chance(0.3):
+    if how in (*_COMPARED, *IN_SPACE) and d.chance(0.3):
         _compared(m, how)
 
 
@@ -350,6 +396,8 @@ def _pair_like(d: Draw, pair: dict[str, Any]) -> dict[str, Any]:
 def _cam_like(d: Draw, cam: dict[str, Any]) -> dict[str, Any]:
     """Return a cam of the same size with other laws."""
     law = d.pick(["cycloidal", "3-4-5"])
+    if "index" in cam:
+        return cam | {"name": "other", "index": cam["index"] | {"law": law}}
     motion = [one | {"law": law} if "law" in one else one for one in cam["motion"]]
     return cam | {"name": "other", "motion": motion}
 
@@ -467,7 +515,8 @@ def _moved(m: Machine) -> None:
     if full and d.chance(0.12):
         _indexed(m, d.pick(full)["name"])
     if not m.last:
-        _crank(m, next(iter(m.shafts)))
+        first = next(iter(m.shafts or m.ways))
+        (_crank if m.shafts else _pushed)(m, first)
 
 
 # --- dyads --------------------------------------------------------------------------------------

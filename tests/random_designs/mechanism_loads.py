@@ -111,7 +111,7 @@ def _masses_and_springs(m: Machine) -> None:
     for on in dict.fromkeys(d.pick([*m.members]) for _ in range(2)):
         if d.chance(0.7):
             _mass(m, on)
-    if d.chance(0.1):
+    if m.shafts and d.chance(0.1):
         shaft = d.pick([*m.shafts])
         m.add("mass", of=shaft, inertia_kg_m2=short(d.log(1e-4, 1)))
     for _ in range(2):
@@ -131,7 +131,7 @@ def _load(m: Machine) -> None:
         else:
             row["force_n"] = [size, short(size * d.even(-1, 1))]
     else:
-        row["on"] = d.pick([*(m.shafts if sort == "shaft" else m.members)])
+        row["on"] = d.pick([*((sort == "shaft" and m.shafts) or m.members)])
         if d.chance(0.5):
             row["torque_nm"] = size
         else:
@@ -176,13 +176,14 @@ def _mass(m: Machine, on: str) -> None:
 def _spring(m: Machine) -> None:
     d, row = m.d, m.add("spring")
     sort = d.pick(["slide", "joints", "member"])
-    if sort == "slide" and m.slides:
+    turning = [row["name"] for row in m.tables.get("crank", ())] or [*m.shafts]
+    if not turning or (sort == "slide" and m.slides):
         row["on"] = d.pick([*m.slides])
     elif sort == "joints" and len(m.joints) > 1:
         one = d.pick([*m.joints])
         row["between"] = [one, d.pick([name for name in m.joints if name != one])]
     else:
-        row["on"] = d.pick([row["name"] for row in m.tables.get("crank", ())] or [*m.shafts])
+        row["on"] = d.pick(turning)
         row["stiffness_nm_rad"] = short(d.log(0.01, 100))
         if d.chance(0.5):
             row["preload_nm"] = short(d.sign() * d.log(0.01, 10))

@@ -10,7 +10,7 @@ import cmath
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -38,6 +38,9 @@ _SIDE: Final = 4.0 * float(np.finfo(float).eps)
 _ROUNDED: Final = 1e-12
 """How far from a knot rounding may leave an angle, rad; of a travel as its share of a turn."""
 
+_FORMULAS: Final = 32
+"""Formulas, and ranges of them, of which laws and cells are kept."""
+
 _CELLS: Final = 16
 """Cells of a turn of an even shaft: what turns with it has few harmonics."""
 
@@ -45,6 +48,7 @@ _NAMES: Final = ("the place", "its velocity", "its acceleration", "its jerk")
 """What a formula of a slide gives, for messages."""
 
 
+@lru_cache(_FORMULAS)
 def _formula(text: str) -> Law:
     from gearcam.laws.formula_syntax import parse
 
@@ -57,6 +61,7 @@ def _formula(text: str) -> Law:
     return law
 
 
+@lru_cache(_FORMULAS)
 def _formula_cells(text: str, low: float, high: float) -> Array:
     """Return the cells in which an expansion of the jerk of a slide resolves it."""
     from gearcam.laws.entry import Axis

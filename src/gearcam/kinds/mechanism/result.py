@@ -104,7 +104,7 @@ class MechanismResult(Result):
         def build(nested: Design) -> Any:
             with within(f"{at}.{spec.key}"):
                 result = kind_of(nested).result(nested, self.tolerances)
-                _ = result.pair if spec.pair is not None else result.program
+                _ = result.pair if spec.pair is not None else result.cam
                 return result
 
         return placed(spec, build)

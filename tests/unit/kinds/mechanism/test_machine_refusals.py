@@ -213,7 +213,8 @@ WRONG: dict[str, tuple[Document, str, str, str, str]] = {
     ),
     "place of an even shaft": (
         longer(drive=[{"name": "even", "even": True, "slide": "q"}]), "drive[1].slide",
-        '"q": is given beside even = true', "exactly one of pair, cam, even and slide; slide also beside a cam of the form translating",
+        '"q": is given beside even = true',
+        "exactly one of pair, cam, even and slide; slide also beside a cam of the form translating",
         "",
     ),
     "plate as the master": (
