@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -626,7 +627,23 @@ def _angle_between(one: float, two: float, opposite: float) -> float:
     return DEG * math.acos((one**2 + two**2 - opposite**2) / (2 * one * two))
 
 
+def _pushed(lift: float) -> float:
+    """Place of a slide 180 mm beside a drum, by a rod of 150 mm and a lever of 320 mm.
+
+    The lever turns about (-159, h), and carries a roller at 160 mm, which is 27 mm high where the
+    lever is 10 deg below the horizontal, at the lift 0.
+    """
+    pivot = complex(-159, 27 + 160 * math.sin(math.radians(10)))
+    end = pivot + 320 * cmath.exp(1j * math.radians(lift - 10))
+    return end.imag + math.sqrt(150**2 - (180 - end.real) ** 2)
+
+
 MACHINE_NUMBERS: dict[str, dict[str, Number]] = {
+    "drum_pusher": {
+        "outputs.pusher.least_mm": (_pushed(0), 1e-9),
+        "outputs.pusher.stroke_mm": (_pushed(20) - _pushed(0), 1e-9),
+        "outputs.lever.stroke_deg": (20.0, 1e-9),
+    },
     "four_bar": {
         # between the crank stretched and folded onto the coupler; at crank 0 the shortest diagonal
         "outputs.rocker.stroke_deg": (

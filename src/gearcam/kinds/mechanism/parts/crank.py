@@ -33,7 +33,7 @@ class CrankSpec(MachinePart):
     name: str = named(gives=Sort.MEMBER, turns=True, doc="its name", example="crank")
     on: str = named(
         needs=Sort.SHAFT,
-        doc="the shaft: the name of an even drive, pair.wheel2, cam.follower",
+        doc="the shaft: the name of an even drive, pair.wheel2, cam.follower, cam.turret",
         example="motor",
     )
     joint: str = named(gives=Sort.JOINT, doc="name of its joint", example="B")

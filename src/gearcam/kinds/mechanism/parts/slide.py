@@ -56,7 +56,7 @@ class PushedPart(MachinePart):
 
 @dataclass(frozen=True, kw_only=True)
 class SlideSpec(PushedPart):
-    """A member that a drive pushes along a straight guide: a follower, a rack, a slide.
+    """A member that a drive pushes along a straight guide: a follower, a plate, a rack, a slide.
 
     Examples
     --------
@@ -68,7 +68,7 @@ class SlideSpec(PushedPart):
     name: str = named(gives=Sort.MEMBER, doc="its name", example="tool")
     on: str = named(
         needs=Sort.WAY,
-        doc="what pushes it: cam.follower, pair.rack, or the name of a slide",
+        doc="what pushes it: cam.follower, cam.plate, pair.rack, or the name of a slide",
         example="cam.follower",
     )
     joint: str = named(gives=Sort.JOINT, doc="name of its joint", example="T")
