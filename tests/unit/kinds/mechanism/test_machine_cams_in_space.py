@@ -212,6 +212,32 @@ def test_an_arm_exerts_its_torque_in_its_lift(frame: dict[str, Any]) -> None:
         assert np.abs(torque).max() > 1.0
 
 
+def test_a_compared_arm_of_the_other_hand_exerts_its_torque_in_its_lift() -> None:
+    arm = {"name": "a", "on": "d.follower", "joint": "T", "length_mm": 160}
+    result = machine(
+        {"cam": SWING}, crank=[arm], load=[{"on": "T", "force_n": [70, -100]}],
+        compare=[{"name": "x", "cam": turning(SWING, "cw")}],
+    )  # fmt: skip
+    study = result.compared["x"].study("torque").columns
+    rate = result.output("d.follower", np.radians(study["theta_deg"]))["d_follower_rad_per_rad"]
+    assert study["torque_nm"] == pytest.approx(study["follower_torque_nm"] * rate, abs=1e-9)
+    assert np.abs(study["torque_nm"]).max() > 1.0
+
+
+def test_a_cam_in_space_behind_a_shaft_stands_at_its_own_angle() -> None:
+    drives = [{"name": "motor", "even": True},
+              {"name": "d", "cam": DRUM, "ratio": -2, "phase_deg": 50}]  # fmt: skip
+    slide = [{"name": "s", "on": "d.follower", "joint": "T"}]
+    result: Any = gc.build(
+        gc.design({"kind": "mechanism", "name": "m", "drive": drives, "slide": slide})
+    )
+    own: Any = gc.build(gc.design(DRUM))
+    found = result.output("s", THETA)
+    law = own.motion(np.radians(50.0) - 2.0 * THETA)
+    assert found["s_mm"] == pytest.approx(law["lift_mm"], abs=1e-10)
+    assert found["s_mm_per_rad"] == pytest.approx(-2.0 * law["velocity_mm_per_rad"], abs=1e-9)
+
+
 @pytest.mark.parametrize(
     ("walls", "down", "off"),
     [("both", -90, False), ("lower", -90, False), ("lower", 90, True), ("upper", -90, True),
@@ -292,6 +318,14 @@ def test_the_picture_has_the_roller_where_the_arm_carries_it(
     joint = place(result, "T", np.radians(drawn.places))
     assert bodies["d.follower"].pose.apply(at) == pytest.approx(joint, abs=1e-9)
     assert np.ptp(bodies["d.cam"].pose.turn) == 0.0
+
+
+def test_the_picture_has_a_guide_under_what_a_cylinder_cam_pushes() -> None:
+    """Only the roller is drawn of a follower along the cam."""
+    drawn = scene(machine({"cam": DRUM}, slide=[{"name": "s", "on": "d.follower", "joint": "T"}]))
+    bodies = {one.name: one for one in drawn.bodies}
+    assert [one.layer for one in bodies["d.follower"].features] == ["FOLLOWER"]
+    assert {one.kind for one in bodies["frame"].features} == {"GROUND"}
 
 
 def test_the_picture_has_the_rollers_of_a_turret_on_its_cam() -> None:

@@ -161,6 +161,8 @@ def test_the_cycle_is_that_of_the_formula(formula: str, turns: int) -> None:
     [
         ("66*(1 - cos(q))", "would be at 132 mm at 180 deg"),
         ("60 - 65*sin(q)", "would be at -5 mm at 90 deg"),
+        # it never returns, but that is not what is wrong first
+        ("30*q", "would be at 188.496 mm at 360 deg"),
         # within the travel in the first turn only
         ("40*(1 - cos(q/3))*1.7", "would be at 136 mm at 540 deg"),
     ],
