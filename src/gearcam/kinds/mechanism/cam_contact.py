@@ -21,7 +21,9 @@ _KILO: Final = 1e3
 def contact_forces(
     result: MechanismResult, work: VirtualWork, q: Array
 ) -> Iterator[tuple[str, Array]]:
-    """Yield the normal force between each cam and its follower, without friction.
+    """Yield the normal force between each cam that is not in space and its follower.
+
+    Without friction.
 
     Parameters
     ----------

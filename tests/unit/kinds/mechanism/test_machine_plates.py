@@ -108,7 +108,8 @@ def test_plate_and_follower_move_as_in_the_frame_of_the_cam(
     """The plate by u along +x, the centre of the roller by s along the guide, at first in 0."""
     result, u = lifted(plate, **frame), 65.0 * (1.0 - np.cos(Q))
     s, axis = own(plate, u)["lift_mm"], math.radians(plate["follower"].get("axis_deg", 0))
-    assert place(result, "U") == pytest.approx(placed(u + 0j, frame), abs=1e-9)
+    along = np.asarray(u, dtype=np.complex128)
+    assert place(result, "U") == pytest.approx(placed(along, frame), abs=1e-9)
     centre = s * complex(math.sin(axis), math.cos(axis))
     assert place(result, "T") == pytest.approx(placed(centre, frame), abs=1e-9)
 
