@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
+from gearcam.base.errors import InfeasibleError
 from gearcam.mechanics.follower_loads import DrivenMotion
+from gearcam.results.nested import within
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -21,9 +25,7 @@ _KILO: Final = 1e3
 def contact_forces(
     result: MechanismResult, work: VirtualWork, q: Array
 ) -> Iterator[tuple[str, Array]]:
-    """Yield the normal force between each cam that is not in space and its follower.
-
-    Without friction.
+    """Yield the normal force between each cam and its follower, without friction.
 
     Parameters
     ----------
@@ -38,26 +40,41 @@ def contact_forces(
     ------
     str, (n,) array, N
         Name of the drive, and the force; negative where the follower is pulled off, or of a groove,
-        conjugate cams and a yoke the other wall carries. It is the force that moves the follower
-        and all behind it; masses, springs and loads of the cam's own design are not in it.
+        conjugate cams, a yoke, a rib and a turret the other wall carries. It is the force that
+        moves the follower and all behind it; masses, springs and loads of the cam's own design are
+        not in it.
+
+    Raises
+    ------
+    InfeasibleError
+        If a wall of a cam in space is undercut, or does not hold its turret.
     """
     from gearcam.kinds.mechanism.torque import shaft_loads
 
     loads = {one.drive: one for one in shaft_loads(result, work, q)}
-    for drive in result.drives:
-        if drive.spec.cam is not None and not drive.spec.in_space:
+    for number, drive in enumerate(result.drives):
+        if drive.spec.cam is not None:
             exerted = loads[drive.spec.name]
             scale = _KILO if exerted.column.endswith("_nm") else 1.0
-            yield drive.spec.name, scale * exerted.values / _effect(drive, q)
+            with within(f"drive[{number}].cam"), np.errstate(invalid="ignore"):
+                effect = _effect(drive, q)
+                if not np.isfinite(effect).all():
+                    place = result.place(float(q[~np.isfinite(effect)][0]))
+                    what = f"the cam does not hold its turret at {place}"
+                    raise InfeasibleError(what, where="cam.length_mm", nearest="a longer cam")
+            yield drive.spec.name, scale * exerted.values / effect
 
 
 def _effect(drive: PlacedDrive, q: Array) -> Array:
     """Return what a unit of normal force does for a rise, N or N mm."""
-    cam = drive.result.cam
-    motion = cam.motions[0]
+    motion = drive.result.cam.motions[0]
     program, follower = motion.program, motion.follower
     support = follower.held(drive.result.design.friction, program.range[1])
     _, x = program.within(drive.own(q))
     s, ds, d2s = program.derivatives(x, 2)
-    push, _ = cam.touches[0].push(DrivenMotion(x, s, ds, d2s), support, 0.0)
-    return push.plain
+    moves = DrivenMotion(x, s, ds, d2s)
+    found = (one.push(moves, support, 0.0)[0].plain for one in drive.result.touches)
+    effect = next(found)
+    if (effect < 0.0).any():  # of the wall that presses in the lift, if there is one
+        effect = next(found, effect)
+    return effect

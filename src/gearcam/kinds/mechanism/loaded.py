@@ -72,7 +72,7 @@ def work_of(
 
 
 class HeavyBody(NamedTuple):
-    """What a drive moves and that has a density: a wheel, a rack, or the cams on its shaft.
+    """What a drive moves and that has a density: a wheel, a rack, a plate, the cams on its shaft.
 
     Attributes
     ----------
@@ -113,11 +113,11 @@ def heavy_bodies(drives: Sequence[PlacedDrive]) -> Iterator[HeavyBody]:
     from gearcam.parts.body import Stack
 
     for number, drive in enumerate(drives):
-        if drive.result is None:
+        if drive.result is None or drive.spec.in_space:  # whose axis lies in the plane
             continue
         blank, cam = drive.result.design.blank, drive.spec.cam is not None
         with within(f"drive[{number}].{drive.spec.key}"):
-            for wheel, word in enumerate(["shaft"] if cam else drive.moved):
+            for wheel, word in enumerate([*drive.moved][: 1 if cam else None]):
                 density = blank.density if cam else blank.wheel(wheel + 1).density
                 if density is not None:
                     parts = drive.result.parts if cam else drive.result.parts[wheel : wheel + 1]

@@ -259,14 +259,78 @@ def test_a_follower_is_pulled_off_one_wall_only_to_its_side(
         assert one.value == pytest.approx(2 * 9.80665, rel=0.01)  # almost at rest
 
 
-def test_contact_forces_of_cams_in_space_are_left_out() -> None:
+@pytest.mark.parametrize("walls", ["both", "lower", "upper"])
+def test_the_contact_force_is_shared_along_the_roller(walls: str) -> None:
+    """A place at x approaches its wall by c = x/sqrt(x^2 + s'^2) of the lift, and carries as much.
+
+    So the force N has the effect N*integral(c^2)/integral(c) along the roller.
+    """
+    cam = {**DRUM, "cam": {**DRUM["cam"], "walls": walls}}
     result = machine(
-        {"cam": DRUM}, slide=[{"name": "s", "on": "d.follower", "joint": "T"}],
+        {"cam": cam}, slide=[{"name": "s", "on": "d.follower", "joint": "T"}],
         load=[{"on": "s", "force_n": -50}],
     )  # fmt: skip
-    study = result.study("forces")
-    assert not [one for one in study.columns if "contact" in one]
-    assert "cams" not in study.facts.document["forces"]
+    study = result.study("forces").columns
+    own: Any = gc.build(gc.design(cam))
+    rate = own.motion(np.radians(study["theta_deg"]))["velocity_mm_per_rad"]
+    end = np.full(rate.shape, 100.0)
+    for _ in range(20):  # the points of contact are aside by 11*s'/sqrt(x^2 + s'^2)
+        end = np.sqrt(100.0**2 - (11.0 * rate) ** 2 / (end**2 + rate**2))
+    x = 82.0 + np.linspace(0.0, 1.0, 2001) * (end[:, None] - 82.0)
+    c = x / np.hypot(x, rate[:, None])
+    effect = np.trapezoid(c**2, x, axis=1) / np.trapezoid(c, x, axis=1)
+    side = -1.0 if walls == "upper" else 1.0  # off which it is pulled
+    assert study["d_contact_n"] == pytest.approx(side * 50.0 / effect, rel=1e-6)
+
+
+def test_the_rollers_of_a_turret_carry_what_its_inertia_asks_for() -> None:
+    """At rest nothing; else the torque over a place that presses, times the cosine of its angle."""
+    study = table().study("forces")
+    force, theta = study.columns["d_contact_n"], study.columns["theta_deg"]
+    moved: Any = gc.build(gc.design(INDEXER))
+    bend = np.radians(moved.motion(np.radians(theta))["acceleration_deg_per_rad2"])
+    torque = 0.02 * bend * (2.0 * math.pi) ** 2
+    assert np.abs(force[theta % 360.0 > 121.0]).max() < 1e-9
+    busy = np.abs(torque) > 0.05 * np.abs(torque).max()
+    lever = 1e3 * torque[busy] / force[busy]  # N mm of a N
+    steepest = math.radians(float(moved.facts.document["cam"]["pressure_angle_deg"]["max"]))
+    assert lever.max() < 58.0
+    assert lever.min() > 44.0 * math.cos(steepest)
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"cam.length_mm": 12}, "does not hold its turret at theta = 0 deg (drive[0].cam: cam.l"),
+        (
+            {"cam.center_distance_mm": 85, "blank.bore_diameter_mm": 10, "index.angle_deg": 80},
+            "wall is undercut",
+        ),
+    ],
+)
+def test_contact_forces_of_a_faulty_globoidal_cam_are_refused(
+    changes: dict[str, Any], told: str
+) -> None:
+    crank = {"name": "k", "on": "d.turret", "joint": "B", "length_mm": 40}
+    result = machine(
+        {"cam": gc.design(INDEXER).with_(changes).to_dict()},
+        crank=[crank],
+        load=[{"on": "B", "force_n": [0, -10]}],
+    )
+    with pytest.raises(InfeasibleError) as caught:
+        result.study("forces")
+    assert told in str(caught.value)
+
+
+def test_a_cam_in_space_with_a_density_has_no_mass_in_the_plane() -> None:
+    heavy = {**DRUM, "blank": {"density_kg_m3": 7850}}
+    slide = [{"name": "s", "on": "d.follower", "joint": "T"}]
+    push = [{"on": "s", "force_n": -50}]
+    moments = [
+        machine({"cam": cam, "speed_rpm": 60}, slide=slide, load=push).study("torque").columns
+        for cam in (DRUM, heavy)
+    ]
+    assert moments[0]["torque_nm"].tolist() == moments[1]["torque_nm"].tolist()
 
 
 def test_cams_in_space_are_compared_with_others_of_their_sort() -> None:

@@ -198,6 +198,19 @@ def test_the_contact_force_of_a_plate_has_its_pressure_angle() -> None:
     assert np.abs(torque).max() > 0.5
 
 
+def test_a_plate_with_a_density_is_moved_with_its_mass() -> None:
+    """Its inertia does the work m*u''*u' in a small turn."""
+    heavy = {**PLATE, "blank": {**PLATE["blank"], "density_kg_m3": 7850}}
+    result = lifted(heavy, load=[{"on": "s", "force_n": -1e-9}])
+    study = result.study("torque").columns
+    q, speed = np.radians(study["theta_deg"]), 2.0 * math.pi
+    made: Any = gc.build(gc.design(heavy))
+    mass = made.facts.document["part"]["mass"]["mass_kg"]
+    torque = 1e-6 * mass * speed**2 * 65.0 * np.cos(q) * 65.0 * np.sin(q)
+    assert study["torque_nm"] == pytest.approx(torque, abs=1e-9)
+    assert torque.max() > 0.01
+
+
 def test_an_arm_over_a_plate_exerts_its_torque_in_its_lift() -> None:
     arm = [{"name": "a", "on": "p.follower", "joint": "T", "length_mm": 100}]
     for frame in FRAMES:
