@@ -12,7 +12,6 @@ import numpy as np
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import LONGEST
-from gearcam.cams.carriers import ROUNDING
 from gearcam.kinds.mechanism.names import needed, parts_of, standing_places, told_parts
 from gearcam.kinds.mechanism.parts.setting import Setting
 from gearcam.linkages.closing import NotClosingError, settled
@@ -245,6 +244,8 @@ def _demand_on_plates(drives: Sequence[PlacedDrive], part: tuple[float, float]) 
     for number, drive in enumerate(drives):
         if drive.spec.slide is None or drive.result is None:
             continue
+        from gearcam.cams.carriers import ROUNDING
+
         q, places = drive.turns_in(*part)
         beyond = np.maximum(-places, places - drive.period)
         worst = int(beyond.argmax())
