@@ -402,3 +402,9 @@ def test_a_guide_without_sizes_has_no_ends() -> None:
     result = gc.build(gc.loads(CYLINDER).with_({"load": [{"force_n": 10}]}))
     assert not {"guide_low_n", "guide_moment_nmm"} & result.study("forces").columns.keys()
     assert held.mirrored == ("guide_twist_nmm",)
+
+
+def test_a_turret_that_is_free_at_some_angle_has_no_forces() -> None:
+    design = built("indexer").design.with_({"cam.length_mm": 18.0})
+    with pytest.raises(InfeasibleError, match="no roller holds the turret"):
+        gc.build(design).study("forces")

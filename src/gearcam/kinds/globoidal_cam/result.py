@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.base.adjustments import Scale, least
-from gearcam.base.errors import DesignError, InfeasibleError
+from gearcam.base.errors import DesignError, InfeasibleError, beyond_limit
 from gearcam.base.findings import Finding, limit_of
-from gearcam.base.numerals import DIGITS
+from gearcam.base.numerals import DIGITS, shortened
 from gearcam.designs.outputs import MESHES
 from gearcam.kinds.globoidal_cam.design import GloboidalCamDesign
 from gearcam.kinds.gridded import ROUND, SAGITTA, STEM, GriddedCam
@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from gearcam.numeric.arrays import Array
     from gearcam.numeric.pose import SpacePose
     from gearcam.spatial.globoidal_spec import TurretSpec
+    from gearcam.spatial.loaded import RollerTouch
 
 TURRET: Final = "turret"
 """Name of its solid."""
@@ -90,6 +91,16 @@ class GloboidalCamResult(GriddedCam):
     def follower_spec(self) -> TurretSpec:
         """The table of the turret."""
         return self.design.turret
+
+    @cached_property
+    def touches(self) -> tuple[RollerTouch, ...]:
+        """Where rollers press (see `GriddedCam.touches`); a turret that is free is refused."""
+        cam = self.cam
+        if cam.grip < 0.0:
+            what = "the cam is too short: at some angles no roller holds the turret"
+            near = shortened(cam.least_length, 1.0)
+            raise beyond_limit(what, "cam.length_mm", cam.length, cam.least_length, near=near)
+        return super().touches
 
     @cached_property
     def checked_without_hints(self) -> tuple[Finding, ...]:

@@ -301,7 +301,7 @@ def test_the_rollers_of_a_turret_carry_what_its_inertia_asks_for() -> None:
 @pytest.mark.parametrize(
     ("changes", "told"),
     [
-        ({"cam.length_mm": 12}, "does not hold its turret at theta = 0 deg (drive[0].cam: cam.l"),
+        ({"cam.length_mm": 12}, "no roller holds the turret"),
         (
             {"cam.center_distance_mm": 85, "blank.bore_diameter_mm": 10, "index.angle_deg": 80},
             "wall is undercut",
