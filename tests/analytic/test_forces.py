@@ -174,7 +174,9 @@ def test_a_stem_locks_at_the_angle_of_the_textbook(follower: str) -> None:
     expected = rising & (np.tan(alpha + phi) >= 1.0 / mu)
     expected |= rising & (alpha + phi >= 0.5 * math.pi)
     assert 0 < expected.sum() < rising.sum()
-    assert (found.locked == expected).all()
+    certain = np.abs(found.reserve) > 2e-6  # at the limit forces are a million times the load
+    assert certain.mean() > 0.95
+    assert (found.locked == expected)[certain].all()
 
 
 def test_the_spring_of_a_harmonic_motion_by_its_closed_form() -> None:

@@ -408,3 +408,40 @@ def test_a_turret_that_is_free_at_some_angle_has_no_forces() -> None:
     design = built("indexer").design.with_({"cam.length_mm": 18.0})
     with pytest.raises(InfeasibleError, match="no roller holds the turret"):
         gc.build(design).study("forces")
+
+
+def test_a_spring_that_just_holds_holds_up_to_the_speed_it_was_solved_for() -> None:
+    """A preload that a load at rest decides leaves nothing but rounding there."""
+    design = gc.loads(CYLINDER).with_(
+        {
+            "cam.walls": "lower",
+            "load": [{"force_n": 80.0, "against": True}],
+            "mass": [{"mass_kg": 3.5}],
+            "spring": [{"stiffness_n_mm": 2.0, "preload_n": "solve"}],
+            "drive.speed_rpm": 150.0,
+        }
+    )
+    found = gc.build(design).study("forces").facts.document["forces"]
+    assert found["spring"]["preload_n"] == pytest.approx(80.0, rel=1e-9)
+    assert found["release_speed_rpm"] >= 150.0
+    assert not found["lifted"]
+
+
+@pytest.mark.parametrize("text", [CYLINDER, INDEXER])
+def test_what_carries_nothing_has_a_report(text: str) -> None:
+    result = gc.build(
+        gc.loads(text).with_({"output": {"files": ["report"], "studies": ["forces"]}})
+    )
+    assert b"Normal force" in result.files("report")["report.html"]
+
+
+def test_the_summary_has_the_largest_forces_of_bearings() -> None:
+    study = built("groove", rubbing=True).study("forces")
+    largest = study.facts.document["forces"]["largest"]
+    for name in ("guide_low_n", "guide_high_n", "bearing_n", "bearing_thrust_n"):
+        rows = np.abs(np.asarray(study.columns[name]))
+        assert largest[name] == pytest.approx(rows.max(), rel=1e-12)
+        # narrowed between rows: finer steps find no more
+    finer = built("groove", rubbing=True).design.with_({"forces.steps": 5000})
+    more = gc.build(finer).study("forces").facts.document["forces"]["largest"]
+    assert largest == pytest.approx(more, rel=1e-7)

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
     from gearcam.base.findings import Finding
     from gearcam.kinds.loaded_cam import LoadedCam
+    from gearcam.mechanics.statics import Statics
     from gearcam.numeric.arrays import Array, Ints
     from gearcam.results.study import Progress
 
@@ -195,8 +196,13 @@ def _facts(
         ),
         "efficiency": _efficiency(loaded),
         "reserve": _least(loaded, statics.reserve, "share that friction leaves"),
-        **_largest_pressure(loaded),
-        "locked": bool(statics.locked.any()),
+        **_largest_pressure(loaded, design.limits),
+        "largest": {
+            name: _largest(loaded, values, BEARINGS[name])
+            for name, values in _bearings(loaded).items()
+            if name in BEARINGS
+        },
+        "locked": _locked(statics),
         "lifted": bool(statics.lifted.any()),
         "reversals": int(np.count_nonzero(np.diff(walls))) or None,
         "spring": _spring(loads) or None,
@@ -230,7 +236,29 @@ def _least(loaded: Loaded, values: Array, label: str) -> Fact | None:
     return Fact(float(values[index]), label, place=loaded.at(index), unit="")
 
 
-def _largest_pressure(loaded: Loaded) -> Tree:
+def _locked(statics: Statics) -> Fact | bool:
+    """Return whether friction locks the follower; then there are forces elsewhere only."""
+    if not statics.locked.any():
+        return False
+    text = "yes: the forces are those of other places"
+    return Fact(True, "friction locks the follower", text=text, shown=True)
+
+
+def _bearings(loaded: Loaded) -> dict[str, Array]:
+    """Return the forces of bearings and guides by columns."""
+    return {"bearing_n": np.abs(loaded.statics.bearing), **loaded.statics.reactions}
+
+
+def _largest(loaded: Loaded, values: Array, label: str) -> Fact | None:
+    """Return the largest size of what a bearing exerts."""
+    if np.isnan(values).all():
+        return None
+    index = int(np.nanargmax(np.abs(values)))
+    size = float(np.abs(values[index]))
+    return Fact(size, f"largest {label}", place=loaded.at(index), shown=True)
+
+
+def _largest_pressure(loaded: Loaded, limits: Mapping[str, float]) -> Tree:
     """Return the largest contact pressure; off the edges of a profile, where it has any."""
     values = np.where(loaded.on_edge, np.nan, loaded.pressure)
     if np.isnan(values).all():
@@ -239,8 +267,17 @@ def _largest_pressure(loaded: Loaded) -> Tree:
         ("pressure_off_edges_mpa", ", off edges") if loaded.on_edge.any() else ("pressure_mpa", "")
     )
     index = int(np.nanargmax(values))
-    label = f"largest contact pressure{off}"
-    return {name: Fact(float(values[index]), label, place=loaded.at(index), unit="MPa", shown=True)}
+    most = limit_of(FORCES, "contact-pressure", limits) or loaded.yielding
+    return {
+        name: Fact(
+            float(values[index]),
+            f"largest contact pressure{off}",
+            at_most=most if math.isfinite(most) else None,
+            place=loaded.at(index),
+            unit="MPa",
+            shown=True,
+        )
+    }
 
 
 def _efficiency(loaded: Loaded) -> Tree | None:
@@ -281,6 +318,17 @@ TITLES: Final = {
     "efficiency": ("Efficiency", "efficiency"),
 }
 """Titles and axes of charts by columns."""
+
+BEARINGS: Final = {
+    "bearing_n": "force of the cam's bearing",
+    "bearing_thrust_n": "thrust of the cam's bearing",
+    "guide_low_n": "force of the guide's lower end",
+    "guide_high_n": "force of the guide's upper end",
+    "pivot_n": "force of the pivot",
+    "pivot_thrust_n": "thrust of the pivot",
+    "pivot_moment_nmm": "couple of the pivot",
+}
+"""What bearings and guides exert that is shown, by columns."""
 
 COLOURS: Final = ("normal_n", "pressure_mpa")
 """Columns that the profile can be coloured by."""
@@ -325,4 +373,18 @@ def _charts(
             ),
             limits=(Limit(label="limit", value=most),) if most else (),
         )
+    charts["bearings"] = chart(
+        title="Forces of bearings and guides",
+        y="force, N",
+        lines=tuple(
+            Line(
+                label=BEARINGS[name] + way,
+                x=np.asarray(columns[column])[rows],
+                y=np.ma.filled(columns[name], np.nan)[rows],
+            )
+            for name in _bearings(loaded)
+            if name in BEARINGS and name.endswith("_n")
+            for way, rows in on_each_way(loaded)
+        ),
+    )
     return charts | more.charts(loaded, columns)

@@ -37,13 +37,15 @@ def load_faults(
         second = [number for number, one in enumerate(solved) if one][1]
         message = 'a second spring is solved too: "solve" stands in one of them'
         yield Fault(("spring", second), message, allowed="numbers in all springs but one")
-    yield from _weightless(document)
+    yield from _weightless(found, document)
 
 
-def _weightless(document: Mapping[str, Any]) -> Iterator[Fault]:
+def _weightless(found: Examined, document: Mapping[str, Any]) -> Iterator[Fault]:
     """Yield the fault of gravity where there is no mass on which it acts."""
-    gravity = document.get("gravity")
-    if isinstance(gravity, Mapping) and "direction_deg" in gravity and not document.get("mass"):
+    gravity, masses = document.get("gravity"), found.parts.get("mass", ())
+    heavy = any(one.mass is not None for one in masses) or (document.get("mass") and not masses)
+    if isinstance(gravity, Mapping) and "direction_deg" in gravity and not heavy:
         value = gravity["direction_deg"]
         message = f"{show(value)}: the follower has no mass on which gravity acts"
-        yield Fault(("gravity", "direction_deg"), message, value, "with a table [[mass]]")
+        allowed = "with a table [[mass]] that has mass_kg"
+        yield Fault(("gravity", "direction_deg"), message, value, allowed)

@@ -83,6 +83,8 @@ def _charts(result: GriddedCam, loaded: Loaded, _: Mapping[str, Any]) -> dict[st
     loads = statics.force[top] * loads
     pressure = line_pressure(loads, curvature, result.design.material)
     rollers = np.flatnonzero(loads.any(axis=1))
+    if not rollers.size:
+        return {}
     where = f"along the rollers {loaded.at(top)}, where the normal force is largest"
 
     def chart(title: str, axis: str, values: Any) -> Chart:

@@ -178,7 +178,8 @@ class UnderLoad:
         def sought(statics: Statics) -> Array:
             pressure, force = self.pressure(statics), statics.force
             least = (force, statics.torque, statics.reserve, efficiency_away_from_rest(statics))
-            most = (force, statics.torque, np.where(np.isinf(pressure), np.nan, pressure))
+            held = (np.abs(one) for one in (statics.bearing, *statics.reactions.values()))
+            most = (force, statics.torque, np.where(np.isinf(pressure), np.nan, pressure), *held)
             found = np.stack([*(-one for one in least), *most])
             return np.where(np.isnan(found), -np.inf, found)
 

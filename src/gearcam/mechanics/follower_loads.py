@@ -293,8 +293,9 @@ class Loads(ShortRepr):
         """
         s, d2s = motion.s, motion.d2s
         sense, weight, hurry = self._sense(motion), self._weights(s)[1], self._hurry(motion)
-        found = sense, self.held_still(motion), self.inertia * d2s
-        sense, a, b = (self.side * one for one in found)
+        still = self.held_still(motion)
+        still[np.abs(still) <= _ROUNDING * np.abs(still).max(initial=0.0)] = 0.0  # of a spring
+        sense, a, b = (self.side * one for one in (sense, still, self.inertia * d2s))
 
         def drag(force: Plane) -> Array:
             return np.abs(sense) * self.support.drag(force, self.friction)

@@ -164,8 +164,8 @@ def contact_pressure(loaded: Loaded, limit: float) -> Iterator[Remark]:
     worst = int(np.nanargmax(finite))
     found = float(finite[worst])
     if found > most:
-        message = "The contact pressure is too high: a larger roller or cam, a wider face or a "
-        message += "weaker spring lowers it."
+        message = "The contact pressure is too high: a larger roller or cam, a wider face or less "
+        message += "load lowers it."
         yield Remark(message, loaded.at(worst), found, limit=most)
 
 

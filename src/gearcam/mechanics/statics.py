@@ -37,6 +37,9 @@ from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 _ROUNDING = 1e-12
 """Load over the largest that is rounding."""
 
+_STUCK = 1e-6
+"""Share of the normal force's effect that is none: the forces would be a million times the load."""
+
 
 class Touch(ABC, ShortRepr):
     """A place where a cam can press on its follower."""
@@ -224,8 +227,8 @@ def solve(
         push, rubbed = touch.push(motion, support, share(touch.radius))
         asked = holding * push.plain >= 0.0
         found, left = support.normal_force(push, total_load, friction)
-        stuck = asked & (left <= 0.0)
-        carries = asked & (left > 0.0) & (carrying < 0)
+        stuck = asked & (left <= _STUCK)
+        carries = asked & (left > _STUCK) & (carrying < 0)
         found = np.maximum(found, 0.0)  # rounding, where the load passes through 0
         reserve = np.where(asked, left, reserve)
         locked |= stuck

@@ -8,9 +8,8 @@ force* N is its sum. Several rollers of a turret share N by the same rule. Parts
 perfect share it less evenly.
 
 On the follower acts, at each place, the line load along -n with the friction of the roller, from
-its pin and from slip (`gearcam.spatial.slip`). The cam's torque is the moment of this
-force about its axis, all work per unit of the cam angle as for plane cams
-(`gearcam.mechanics.statics`).
+its pin and from slip (`gearcam.spatial.slip`). The cam's torque is the moment of this force about
+its axis, all work per unit of the cam angle as for plane cams (`gearcam.mechanics.statics`).
 
 The pressure is that of two cylinders with the relative curvature of the line of contact
 (`RollerContact.curvature`), at the place where it is largest.
@@ -258,7 +257,7 @@ class RollerTouch(Touch):
 
     def reactions(self, force: Array, push: Any) -> dict[str, Array]:
         """Return the thrust of the cam on its bearing (see `Touch.reactions`)."""
-        return {"bearing_thrust_n": -force * push.force[:, 2]}
+        return {"bearing_thrust_n": force * push.force[:, 2]}
 
     def pressed(self, x: Array) -> tuple[Array, Array, Array]:
         """Return places, line loads of a normal force of 1, and relative curvatures.

@@ -90,7 +90,8 @@ def _pressure(result: GloboidalCamResult) -> Fact:
     spot = result.cam.pressure
     limit = math.degrees(limit_of(KIND, "pressure-angle", result.design.limits))
     angle = math.degrees(spot.value)
-    return Fact(angle, "largest pressure angle", at_most=limit, place=spot.place, shown=True)
+    meaning = "largest pressure angle"
+    return Fact(angle, meaning, at_most=limit, place=spot.place, unit="deg", shown=True)
 
 
 def _tables(result: GloboidalCamResult, _: Any) -> Files:

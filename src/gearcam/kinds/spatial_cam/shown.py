@@ -134,7 +134,12 @@ def _pressure(result: SpatialCamResult) -> Tree:
         angle, most = math.degrees(spot.value), math.degrees(limit)
         whole = x is None
         return Fact(
-            angle, meaning, at_most=most if whole else None, place=spot.place, shown=not kind
+            angle,
+            meaning,
+            at_most=most if whole else None,
+            place=spot.place,
+            unit="deg",
+            shown=not kind,
         )
 
     return {
