@@ -170,8 +170,9 @@ def in_space(cam: Any, touch: RollerTouch, theta: float) -> tuple[np.ndarray, np
     c, s = math.cos(theta), math.sin(theta)
     turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
     points, normals = wall.points[0] @ turn.T, wall.normals[0] @ turn.T
-    share = np.abs(normals[:, 2])
-    share[[0, -1]] *= 0.5
+    length = np.linalg.norm(np.gradient(points, axis=0), axis=1)  # half a step at the ends
+    length[[0, -1]] *= 0.5
+    share = np.abs(normals[:, 2]) * length
     each = -(share / share.sum())[:, None] * normals
     return each.sum(axis=0), np.cross(points, each).sum(axis=0)
 
@@ -229,6 +230,8 @@ def test_weight_across_the_guide_takes_part_in_its_friction() -> None:
     )
     needed = statics.against + 0.1 * np.sign(np.where(np.abs(ds) < 1e-9, 0.0, ds)) * ends
     assert statics.force * lifting == pytest.approx(needed, rel=1e-5)
+    thrust = statics.reactions["bearing_thrust_n"]  # the bearing pushes the cam as it the follower
+    assert thrust == pytest.approx(statics.force * lifting, rel=1e-5)
     assert ends.min() >= 0.999 * 9.0 * 9.80665  # at rest the ends carry the weight
 
 
@@ -316,8 +319,9 @@ def test_a_clockwise_cam_is_the_mirror_image() -> None:
             gc.build(design.with_({"cam.rotation": way})).study("forces").columns
             for way in ("ccw", "cw")
         )
+        turned = ("pivot_thrust_n",) if name == "indexer" else ("guide_twist_nmm", "pivot_y_n")
         for column in one:
-            sign = -1.0 if column in ("guide_twist_nmm", "pivot_y_n") and name != "indexer" else 1.0
+            sign = -1.0 if column in turned else 1.0
             assert other[column] == pytest.approx(
                 sign * np.asarray(one[column]), rel=1e-12, nan_ok=True
             ), column
@@ -350,13 +354,14 @@ def test_all_of_each_roller_that_is_on_the_cam_presses(theta: float) -> None:
     """The length of the lines of contact, by many places on all rollers of the turret."""
     cam = built("indexer").cam
     turns = 2.0 * math.pi * np.arange(-4.0, 4.0) + theta
-    x = np.tile(np.linspace(30.0, cam.reach, 28001), (len(turns), 1))
+    x = np.tile(np.linspace(cam.hub, cam.reach, 14001), (len(turns), 1))
     for touch, wall in zip(built("indexer").touches, cam.walls, strict=True):
         points = wall.contact(turns, x).points
         radius, height = np.hypot(points[..., 0], points[..., 1]), np.abs(points[..., 2])
         depth = np.hypot(cam.distance - radius, points[..., 2])
         on = (depth >= cam.top) & (height <= cam.half_length) & (radius < cam.distance)
-        length = on.sum() * 28.0 / 28000.0
+        apart = np.linalg.norm(np.diff(points, axis=1), axis=2)
+        length = apart[on[:, 1:] & on[:, :-1]].sum()
         line = touch.line(np.array([theta]))
         assert line.weights.sum() == pytest.approx(length, abs=6e-3)
         assert touch.rollers(np.array([theta]))[0] == on.any(axis=1).sum()
@@ -404,6 +409,76 @@ def test_a_guide_without_sizes_has_no_ends() -> None:
     assert held.mirrored == ("guide_twist_nmm",)
 
 
+@pytest.mark.parametrize("angle", [15.0, 30.0, 45.0])
+def test_the_pressure_of_a_cone_is_that_of_its_line_of_contact(angle: float) -> None:
+    """At rest: a cone on a cone about the cam's axis, even load on a line of 12 mm/cos(g)."""
+    design = built("groove").design.with_(
+        {"follower.cone_deg": angle, "follower.roller_radius_mm": 20.0, "cam.length_mm": 120.0}
+    )
+    result = gc.build(design.with_({"load": [{"force_n": 100.0}], "friction": {}}))
+    statics = UnderLoad(result).statics(np.array([6.1]), np.ones(1))
+    g = math.radians(angle)
+    assert statics.force[0] == pytest.approx(100.0 / math.cos(g), rel=1e-12)
+    # wall and roller at the inner end: the roller of 20 - 12*tan(g), the wall flat around it
+    thin = 20.0 - 12.0 * math.tan(g)
+    _, loads, curvature = result.touches[statics.carrying[0]].pressed(np.array([6.1]))
+    load = statics.force[0] * loads[0, 0]
+    line = result.touches[0].line(np.array([6.1])).weights.sum()
+    assert line == pytest.approx(12.0 / math.cos(g), rel=1e-9)
+    assert load == pytest.approx(statics.force[0] / line, rel=1e-9)
+    assert curvature[0, 0] > math.cos(g) / thin
+
+
+def test_a_pin_is_thinner_than_its_roller() -> None:
+    changes = {"friction.roller": 0.1, "friction.journal_radius_mm": [10, 8]}
+    for text in (CYLINDER, INDEXER):
+        with pytest.raises(DesignError, match="the pin is not thinner than its roller"):
+            gc.build(gc.loads(text).with_(changes)).study("forces")
+
+
+def test_a_roller_that_leaves_the_cam_on_slopes_is_refused() -> None:
+    design = gc.loads(CYLINDER).with_(
+        {
+            "cam.groove_depth_mm": 0.25,
+            "cam.length_mm": 120,
+            "motion": [
+                {"type": "rise", "angle_deg": 100, "law": "3-4-5", "lift_mm": 60},
+                {"type": "return", "angle_deg": 150, "law": "3-4-5"},
+                {"type": "dwell", "angle_deg": "rest"},
+            ],
+            "load": [{"force_n": 50}],
+        }
+    )
+    with pytest.raises(InfeasibleError, match="the roller leaves the cam at"):
+        gc.build(design).study("forces")
+
+
+def test_what_is_lifted_off_a_wall_above_needs_loads_that_press_upwards() -> None:
+    design = gc.loads(CYLINDER).with_({"cam.walls": "upper", "load": [{"force_n": 20}]})
+    (finding,) = [
+        one for one in gc.build(design).study("forces").findings if one.code == "lift-off"
+    ]
+    assert "loads below 0, which press it upwards" in finding.message
+
+
+def test_slip_is_integrated_to_a_hundredth_across_the_load() -> None:
+    """Sideways forces against those of 65 times as many places."""
+    from gearcam.spatial import slip
+
+    places = np.linspace(-1.0, 1.0, 17)
+    fine = np.linspace(-1.0, 1.0, 16 * 65 + 1)
+    found = []
+    for x in (places, fine):
+        weights = np.full((1, len(x)), 1.0)
+        weights[0, [0, -1]] = 0.5
+        weights /= weights.sum()
+        speeds = 10.0 + 1.3 * x[None, :], 0.2 + 0.3 * x[None, :] ** 2
+        rubbed = slip.rubbed(weights, np.full((1, len(x)), 5.0), speeds, 0.01, 0.1)
+        found.append([(weights * one).sum() for one in rubbed])
+    assert found[0] == pytest.approx(found[1], rel=0.01)
+    assert found[0][0] == pytest.approx(0.01, rel=1e-9)  # what the pin needs
+
+
 def test_a_turret_that_is_free_at_some_angle_has_no_forces() -> None:
     design = built("indexer").design.with_({"cam.length_mm": 18.0})
     with pytest.raises(InfeasibleError, match="no roller holds the turret"):
@@ -428,20 +503,19 @@ def test_a_spring_that_just_holds_holds_up_to_the_speed_it_was_solved_for() -> N
 
 
 @pytest.mark.parametrize("text", [CYLINDER, INDEXER])
-def test_what_carries_nothing_has_a_report(text: str) -> None:
-    result = gc.build(
-        gc.loads(text).with_({"output": {"files": ["report"], "studies": ["forces"]}})
-    )
-    assert b"Normal force" in result.files("report")["report.html"]
+def test_what_carries_nothing_has_charts_with_lines(text: str) -> None:
+    charts = gc.build(gc.loads(text)).study("forces").charts
+    assert "normal" in charts
+    assert all(one.lines for one in charts.values())
 
 
-def test_the_summary_has_the_largest_forces_of_bearings() -> None:
-    study = built("groove", rubbing=True).study("forces")
+def test_the_summary_has_the_largest_forces_of_bearings_between_steps_too() -> None:
+    design = built("groove", rubbing=True).design
+    coarse, fine = (gc.build(design.with_({"forces.steps": one})) for one in (24, 2000))
+    study = coarse.study("forces")
     largest = study.facts.document["forces"]["largest"]
     for name in ("guide_low_n", "guide_high_n", "bearing_n", "bearing_thrust_n"):
         rows = np.abs(np.asarray(study.columns[name]))
         assert largest[name] == pytest.approx(rows.max(), rel=1e-12)
-        # narrowed between rows: finer steps find no more
-    finer = built("groove", rubbing=True).design.with_({"forces.steps": 5000})
-    more = gc.build(finer).study("forces").facts.document["forces"]["largest"]
-    assert largest == pytest.approx(more, rel=1e-7)
+    more = fine.study("forces").facts.document["forces"]["largest"]
+    assert largest == pytest.approx(more, rel=1e-9)

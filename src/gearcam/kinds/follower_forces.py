@@ -104,6 +104,7 @@ def forces_of(result: LoadedCam, progress: Progress, more: MoreOfForces) -> Stud
             release=design.drive.words(release[0]) if release and release[0] else "",
             loose=_place(result, loads, release) if release and not release[0] else "",
             holding=_holding(loads),
+            above=loads.side < 0.0,
         )
         found = more.findings(run_checks(FORCES, loaded, design.limits))
     columns = _columns(result, loaded, width, more)
@@ -255,7 +256,8 @@ def _largest(loaded: Loaded, values: Array, label: str) -> Fact | None:
         return None
     index = int(np.nanargmax(np.abs(values)))
     size = float(np.abs(values[index]))
-    return Fact(size, f"largest {label}", place=loaded.at(index), shown=True)
+    noise = _NOISE * float(np.nanmax(loaded.statics.force, initial=0.0))
+    return Fact(size, f"largest {label}", place=loaded.at(index), shown=True, noise=noise)
 
 
 def _largest_pressure(loaded: Loaded, limits: Mapping[str, float]) -> Tree:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearcam.base.errors import DesignError, InfeasibleError, Problem, beyond_limit
+from gearcam.base.numerals import formatted
 from gearcam.mechanics.follower_loads import Loads
 from gearcam.mechanics.hertz import line_pressure
 from gearcam.mechanics.statics import Statics, solve
@@ -69,6 +70,7 @@ def loads_of(result: LoadedCam) -> Loads:
         If no stiffness of a spring keeps the follower on the cam.
     """
     demand(result.design)
+    _demand_pin(result)
     design, motion = result.design, result.cam.motions[0]
     pull = design.gravity.pull
     follower, highest = motion.follower, motion.program.range[1]
@@ -87,6 +89,18 @@ def loads_of(result: LoadedCam) -> Loads:
     if math.isinf(loads.solved.get("stiffness", 0.0)):
         raise _no_stiffness(loads)
     return loads
+
+
+def _demand_pin(result: LoadedCam) -> None:
+    """Refuse a pin that is not thinner than its roller."""
+    friction, design = result.design.friction, result.design
+    if not friction.roller or getattr(result.follower_spec, "type", "roller") != "roller":
+        return
+    pin, least = friction.journal_radius[1], min(one.radius for one in result.touches)
+    if pin >= least:
+        key, near = "friction.journal_radius_mm[1]", f"below {formatted(least)} mm"
+        what = f"{formatted(pin)} mm: the pin is not thinner than its roller"
+        raise DesignError([Problem(what, file=design.source, key=key, allowed=near)])
 
 
 def _no_stiffness(loads: Loads) -> InfeasibleError:

@@ -46,6 +46,8 @@ class Loaded(ShortRepr):
         Of the driver, in N m; of a driver that slides nan.
     way : (n,) array, optional
         Of a cam that slides to and fro: 1 forward, -1 back.
+    above : bool
+        Whether the only wall is above the follower, so that loads have to press it upwards.
     holding : str
         The preload that holds the follower on the cam, in words; empty without a spring.
     release : str
@@ -65,6 +67,7 @@ class Loaded(ShortRepr):
     release: str = ""
     loose: str = ""
     holding: str = ""
+    above: bool = False
 
     @property
     def on_edge(self) -> Mask:
@@ -122,12 +125,16 @@ def lift_off(loaded: Loaded, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     lifted = loaded.statics.lifted
     if lifted.any():
         slow = ", at the lowest speeds too" if loaded.loose else ""
-        message = f"The follower lifts off the cam{slow}: it needs a stiffer spring or more preload"
+        needs = "a stiffer spring or more preload"
+        if loaded.above:
+            needs = "loads below 0, which press it upwards"
+        message = f"The follower lifts off the cam{slow}: it needs {needs}"
         message += f"; it stays on it up to {loaded.release}." if loaded.release else "."
         message += f" With {loaded.holding} it stays on the cam." if loaded.holding else ""
         yield Remark(message, loaded.stretch(lifted))
     elif loaded.loose:
-        message = "The follower lifts off the cam at the lowest speeds: it needs more preload."
+        needs = "loads below 0, which press it upwards" if loaded.above else "more preload"
+        message = f"The follower lifts off the cam at the lowest speeds: it needs {needs}."
         yield Remark(message, loaded.loose)
 
 

@@ -39,7 +39,6 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
@@ -110,8 +109,10 @@ class TotalLoad:
 class Support(ABC, ShortRepr):
     """What holds a follower."""
 
-    mirrored: ClassVar[tuple[str, ...]]
-    """Reactions that change their sign in the mirror image, which a cam that turns clockwise is."""
+    @property
+    @abstractmethod
+    def mirrored(self) -> tuple[str, ...]:
+        """Reactions that change their sign in the mirror image, of a cam that turns clockwise."""
 
     @abstractmethod
     def velocity(self, z: Plane) -> Plane:
@@ -209,7 +210,10 @@ class StraightGuide(Support):
     direction: complex
     middle: complex
 
-    mirrored = "guide_n", "guide_moment_nmm", "guide_low_n", "guide_high_n"
+    @property
+    def mirrored(self) -> tuple[str, ...]:
+        """All but forces along it (see `Support.mirrored`)."""
+        return "guide_n", "guide_moment_nmm", "guide_low_n", "guide_high_n"
 
     def velocity(self, z: Plane) -> Plane:
         """Return the direction (see `Support.velocity`)."""
@@ -311,7 +315,10 @@ class Pivot(Support):
     at: complex
     spin: float
 
-    mirrored = ("pivot_x_n",)
+    @property
+    def mirrored(self) -> tuple[str, ...]:
+        """The component along x (see `Support.mirrored`)."""
+        return ("pivot_x_n",)
 
     def velocity(self, z: Plane) -> Plane:
         """Return velocities around the pivot (see `Support.velocity`)."""

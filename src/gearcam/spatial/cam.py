@@ -144,6 +144,19 @@ class SpatialCam(RollerCam):
         return self.least(thickness, (self.inner, self.outer_radius))
 
     @cached_property
+    def depth_of_contact(self) -> Spot:
+        """How far the end of the roller is inside the blank where it touches a wall, mm: the least.
+
+        Below 0 the roller leaves the cam there: the point of contact is beside the roller's axis.
+        """
+
+        def inside(theta: Array, x: Array) -> Array:
+            points = [self.contact(theta, x, side).points for side in self.sides]
+            return self.outer_radius - np.max([np.hypot(*p[..., :2].T).T for p in points], axis=0)
+
+        return self.least(inside, (self.inner, self.inner))
+
+    @cached_property
     def heights(self) -> tuple[float, float]:
         """Lowest and highest place of the roller's axis, mm."""
         point, _ = self.guide.placed(np.array(self.program.range))

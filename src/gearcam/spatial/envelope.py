@@ -215,10 +215,10 @@ class RollerContact(ShortRepr):
         return self.side * (around / cosine + along * r * by_x / by_psi)
 
     @cached_property
-    def _stretch(self) -> Array:
-        """Squares of the length of the line of contact, over that of x."""
+    def stretch(self) -> Array:
+        """Length of the line of contact over that of x, (n, k): |X_x|."""
         by_psi, by_x = self._slopes
-        return math.cos(self.half_angle) ** -2 + (self.radius * by_x / by_psi) ** 2
+        return np.hypot(1.0 / math.cos(self.half_angle), self.radius * by_x / by_psi)
 
     def curvature(self, roller: Roller) -> Array:
         """Return the relative curvature of wall and a roller across the line of contact.
@@ -233,9 +233,9 @@ class RollerContact(ShortRepr):
         (n, k) array, 1/mm
         """
         cosine, by_psi = math.cos(self.half_angle), np.abs(self._slopes[0])
-        own = cosine * by_psi * self._stretch / (self.radius * self.spread)
+        own = cosine * by_psi * self.stretch**2 / (self.radius * self.spread)
         narrower = 1.0 / roller.radii(self.x) - 1.0 / self.radius
-        return own + narrower / (cosine * self._stretch)
+        return own + narrower / (cosine * self.stretch**2)
 
 
 def touched(axis: RollerAxis, roller: Roller, x: Array, side: int) -> RollerContact:

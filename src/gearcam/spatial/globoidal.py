@@ -68,6 +68,8 @@ class GloboidalCam(RollerCam):
         of the ends of the rollers; of the core.
     length : float, mm
         Of the cam, half of it to each side of the turret's axis.
+    hub : float, mm
+        Radius of the turret's body, where its rollers begin.
     """
 
     program: IndexProgram
@@ -77,6 +79,7 @@ class GloboidalCam(RollerCam):
     reach: float
     floor: float
     length: float
+    hub: float = 0.0
 
     @property
     def widest(self) -> float:
@@ -306,7 +309,7 @@ class GloboidalWall(RollerWall):
         return np.abs(self.contact(theta, x[:, None]).points[:, 0, 2]) - self.cam.half_length
 
     def contact_line(self, theta: Array) -> ContactLine:
-        """Return where rollers press, from the tops of the ribs to their ends (see `RollerWall`).
+        """Return where rollers press, from the tops of ribs to their ends (see `RollerWall`).
 
         A roller that passes a face presses up to this face only.
         """
@@ -316,7 +319,8 @@ class GloboidalWall(RollerWall):
         first = np.ceil((-last - cam.angle(theta)) / cam.pitch)
         turns = np.arange(math.floor(2.0 * last / cam.pitch) + 1.0)
         every = (theta[:, None] + TURN * (first[:, None] + turns)).ravel()
-        low, high = self.place(every, cam.top), np.full(len(every), cam.reach)
+        low = np.maximum(self.place(every, cam.top), cam.hub)
+        high = np.full(len(every), cam.reach)
         # along a roller the distance from the middle of the cam only rises
         off = self._beyond_face(every, low) > 0.0
         cut = np.flatnonzero((self._beyond_face(every, high) > 0.0) & ~off)

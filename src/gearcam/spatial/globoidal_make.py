@@ -50,6 +50,7 @@ def make_globoidal(
         stops=turret.stops,
         roller=Roller(radius=turret.roller_radius),
         top=turret.hub + cam.floor_clearance,
+        hub=turret.hub,
         reach=turret.reach,
         # the rim of a roller's end is farther from the turret's axis than its middle
         floor=math.hypot(turret.reach, turret.roller_radius) + cam.floor_clearance,

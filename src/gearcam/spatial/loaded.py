@@ -94,18 +94,19 @@ class RollerMotion(ShortRepr):
         Its lift.
     follower : RollerFollower
         The follower.
-    clockwise : bool
-        Whether the plane of the motion is seen in a mirror.
+    hand : float
+        What quantities are multiplied with that change their sign in a mirror: -1 of a cam that
+        turns clockwise.
     """
 
     program: Program
     follower: RollerFollower
-    clockwise: bool
+    hand: float
 
     @property
-    def hand(self) -> float:
-        """What is multiplied with quantities that change their sign in a mirror."""
-        return -1.0 if self.clockwise else 1.0
+    def clockwise(self) -> bool:
+        """Whether the plane of the motion is seen in a mirror."""
+        return self.hand < 0.0 and self.follower.guide.mirrored
 
 
 _CELLS: Final = 8
@@ -129,7 +130,7 @@ class ContactLine(NamedTuple):
     contact : RollerContact
         The same places, those of each roller in a row: n by r rows.
     weights : (n, k) array, mm
-        Length along the roller that each place stands for; 0 where it is not on the cam.
+        Length of the line that each place stands for; 0 where it is not on the cam.
     """
 
     contact: RollerContact
@@ -151,8 +152,9 @@ class ContactLine(NamedTuple):
             ``contact(x)`` returns the contact at places (n*rollers, k).
         """
         length = (high - low)[:, None]
-        weights = (length * _SIMPSON).reshape(len(low) // rollers, rollers * ALONG)
-        return cls(contact(low[:, None] + length * _PLACES), weights)
+        made = contact(low[:, None] + length * _PLACES)
+        weights = length * _SIMPSON * made.stretch
+        return cls(made, weights.reshape(len(low) // rollers, rollers * ALONG))
 
     def of(self, values: Array) -> Array:
         """Return values of the contact at each cam angle: (n*r, k/r, ...) as (n, k, ...)."""

@@ -11,8 +11,11 @@ W, so that W is its only root; where even a roller at rest gets less, it does no
 
 Without a coefficient of slip there is only the friction of the pin, along the circumference.
 
-The jump of the friction where the slip changes its sign is spread over a space between places;
-energy and moments balance exactly nevertheless. Depends on numeric; numpy only.
+Where the slip changes its sign the friction jumps. At each place stands its mean over half a step
+to both sides, in closed form for an even change of the slip and a constant w: with s the slip, s+
+and s- that at the ends, ``2*s/(hypot(s+, w) + hypot(s-, w))`` around the roller and
+``w*(asinh(s+/w) - asinh(s-/w))/(s+ - s-)`` along it. Energy and moments balance exactly; forces
+across the load are within 1 % of their largest. Depends on numeric; numpy only.
 """
 
 from __future__ import annotations
@@ -29,6 +32,10 @@ _ROOT = 1e-13
 
 _CREEP = 1e-4
 """Slip at which a roller is held, over its speed, where it does not slip otherwise."""
+
+
+_NARROW = 1e-6
+"""Least change of the slip over half a step, over w: for less the means are the values."""
 
 
 class Rubbed(NamedTuple):
@@ -74,16 +81,18 @@ def rubbed(
         return Rubbed(pin * np.sign(around), np.zeros_like(along), pin * np.abs(around))
     way = np.sign((loads * around).sum(axis=1, keepdims=True))
     rolling = way * around / radius
-    spread = np.ptp(rolling, axis=1, keepdims=True) / (loads.shape[1] - 1)
-    jump = radius * (spread + _CREEP * np.abs(rolling).max(axis=1, keepdims=True))
+    creep = radius * _CREEP * np.abs(around / radius).max(axis=1, keepdims=True)
+    aside = np.hypot(along, creep) + np.finfo(float).tiny
     mean = (loads * radius).sum(axis=1, keepdims=True)
 
-    def slipping(turn: Array) -> tuple[Array, Array]:
+    def slipping(turn: Array) -> tuple[Array, Array, Array]:
+        """Return the slip, its change over half a step, and its mean size with that along."""
         speed = around - way * radius * turn
-        return speed, np.sqrt(speed**2 + along**2 + jump**2) + np.finfo(float).tiny
+        half = np.maximum(0.5 * np.abs(np.gradient(speed, axis=1)), _NARROW * aside)
+        return speed, half, 0.5 * (np.hypot(speed + half, aside) + np.hypot(speed - half, aside))
 
     def excess(turn: Array) -> Array:
-        speed, size = slipping(turn[:, None])
+        speed, _, size = slipping(turn[:, None])
         gained = way * slip * (loads * radius * speed / size).sum(axis=1, keepdims=True)
         return (gained - pin * mean)[:, 0]
 
@@ -91,8 +100,9 @@ def rubbed(
     held = excess(rest) <= 0.0
     width = _ROOT * float(fastest.max(initial=0.0)) or 1.0
     turn = np.where(held, 0.0, bracketed_root(excess, rest, fastest, width))[:, None]
-    speed, size = slipping(turn)
-    lost = slip * (speed**2 + along**2) / size + pin * turn * mean / np.maximum(
-        loads.sum(axis=1, keepdims=True), np.finfo(float).tiny
-    )
-    return Rubbed(slip * speed / size, slip * along / size, lost)
+    speed, half, size = slipping(turn)
+    share = np.arcsinh((speed + half) / aside) - np.arcsinh((speed - half) / aside)
+    beside = slip * along * share / (2.0 * half)
+    carried = np.maximum(loads.sum(axis=1, keepdims=True), np.finfo(float).tiny)
+    lost = slip * speed**2 / size + beside * along + pin * turn * mean / carried
+    return Rubbed(slip * speed / size, beside, lost)

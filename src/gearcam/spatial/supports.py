@@ -15,7 +15,9 @@ guide, b the length and w the weight across it, the ends exert
 
 and their friction is ``mu*(abs(R1) + abs(R2))``; that of a cam in the plane of its guide is the
 same. F and M are in proportion to the normal force N, so that N is the root of a convex function;
-without weight across the guide it is closed.
+without weight across the guide it is closed. Loads, springs and weight act along the middle of the
+guide. Where friction leaves nothing of N, the follower counts as locked: with
+weight across the guide this is on the safe side, as a small N may take it from the guide.
 
 Source: 000 eqs. (3.65) to (3.69), derived in space here. Depends on mechanics and numeric; numpy
 only.
@@ -71,7 +73,10 @@ class OverhungGuide(StraightGuide):
     height: float = 0.0
     length: float = 0.0
 
-    mirrored = ("guide_twist_nmm",)
+    @property
+    def mirrored(self) -> tuple[str, ...]:
+        """What keeps it from turning (see `Support.mirrored`): the others are sizes."""
+        return ("guide_twist_nmm",)
 
     def _sides(self, push: Any) -> tuple[Plane, Array]:
         """Return the force across the guide, and the moment about its middle, (3, n)."""
@@ -167,7 +172,10 @@ class ThrustPivot(Pivot):
     along: int
     central: bool
 
-    mirrored = ("pivot_y_n",)
+    @property
+    def mirrored(self) -> tuple[str, ...]:
+        """What is along y, which is reversed (see `Support.mirrored`)."""
+        return ("pivot_thrust_n",) if self.along else ("pivot_y_n",)
 
     def reactions(
         self, force: Array, push: Any, total_load: TotalLoad, friction: FrictionSpec

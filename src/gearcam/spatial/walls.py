@@ -96,8 +96,7 @@ class RollerCam(ABC, ShortRepr):
         """The motion of its follower."""
         guide = self.guide
         follower = RollerFollower(guide=guide, radius=self.roller.radius_at(self.middle))
-        clockwise = self.clockwise and guide.mirrored
-        return (RollerMotion(program=self.program, follower=follower, clockwise=clockwise),)
+        return (RollerMotion(program=self.program, follower=follower, hand=self.hand),)
 
     @cached_property
     def touches(self) -> tuple[RollerTouch, ...]:
@@ -109,7 +108,7 @@ class RollerCam(ABC, ShortRepr):
                 roller=self.roller,
                 middle=self.middle,
                 line=wall.contact_line,
-                above=wall.side > 0,
+                above=wall.key == "upper",
             )
             for wall in self.walls
         )

@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gearcam.base.errors import InfeasibleError
 from gearcam.base.findings import Finding
+from gearcam.base.numerals import formatted
 from gearcam.designs.outputs import MESHES
 from gearcam.kinds.cam.public import lift_program
 from gearcam.kinds.gridded import ROUND, SAGITTA, STEM, GriddedCam
@@ -38,6 +40,7 @@ if TYPE_CHECKING:
     from gearcam.base.adjustments import Changes
     from gearcam.numeric.pose import SpacePose
     from gearcam.parts.bands import BandedBody
+    from gearcam.spatial.loaded import RollerTouch
     from gearcam.spatial.milling import RotaryPath
     from gearcam.spatial.sizing import SolvedDiameter
     from gearcam.spatial.spec import SpatialFollower
@@ -114,6 +117,17 @@ class SpatialCamResult(GriddedCam):
         program, design = self.program, self.solved
         with self.stage("cam"), self.rows.named():
             return make_cylinder(program, design.follower, design.cam, design.blank.bore)
+
+    @cached_property
+    def touches(self) -> tuple[RollerTouch, ...]:
+        """Where the roller presses (see `GriddedCam.touches`); it must reach into the cam."""
+        spot = self.cam.depth_of_contact
+        if spot.value <= 0.0:
+            what = f"the roller leaves the cam at {formatted(math.degrees(spot.theta), 5)} deg"
+            why = "there its end touches the wall outside the cylinder"
+            near = "a deeper groove and a longer roller, or a smaller pressure angle"
+            raise InfeasibleError(f"{what}: {why}", where="cam.groove_depth_mm", nearest=near)
+        return super().touches
 
     @property
     def follower_spec(self) -> SpatialFollower:
