@@ -50,8 +50,10 @@ def peak_facts(result: GriddedCam, scale: float, unit: str, whose: str = "") -> 
 
 
 def spread_facts(wall: RollerWall) -> Tree:
-    """Return how much a `wall` spreads."""
+    """Return how much a `wall` spreads; nothing where none of it is on the cam."""
     spot = wall.spread
+    if math.isinf(spot.value):
+        return {}
     return {"least_spread_mm": Fact(spot.value, "least spread of the wall", place=spot.place)}
 
 

@@ -211,3 +211,12 @@ def test_tables_import_no_other_kind_and_make_no_solid(tmp_path: Path) -> None:
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert found.stdout.strip().splitlines()[-2:] == ["[]", "[]"]
     assert (tmp_path / "plain" / "walls.csv").exists()
+
+
+def test_a_cam_without_a_whole_rib_has_facts() -> None:
+    """So short that no point of a wall is on it: there is no least spread."""
+    turret = {"stops": 6, "roller_radius_mm": 30, "roller_length_mm": 30, "reach_mm": 100}
+    size = {"form": "globoidal", "center_distance_mm": 200, "length_mm": 2}
+    result = gc.build(DESIGN.with_({"turret": turret, "cam": size, "index.angle_deg": 100}))
+    walls = result.facts.document["cam"]["walls"]
+    assert "least_spread_mm" not in walls["lower"]

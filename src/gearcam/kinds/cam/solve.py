@@ -40,7 +40,7 @@ from gearcam.kinds.cam.design import CamDesign
 from gearcam.kinds.cam.forms.base import CHORD_TOLERANCE, lift_program
 from gearcam.kinds.cam.tables import GOALS
 from gearcam.kinds.under_load import largest_pressure, loads_of
-from gearcam.mechanics.load import FORCES
+from gearcam.mechanics.force_checks import FORCES  # with its checks, which have the limits
 from gearcam.parts.checks import KIND as PARTS_KIND
 
 if TYPE_CHECKING:
