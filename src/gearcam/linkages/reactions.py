@@ -9,6 +9,10 @@ The moment that the drives exert then, over the turn of the driver, is found a s
 virtual work (see `gearcam.linkages.work`), without any reaction: the difference is an error
 estimate of both.
 
+Contacts (see `gearcam.linkages.contacts`) load the bearings and guides of what they drive and of
+what drives them, in proportion to the drives' moments and forces, on one flank or wall or the
+other.
+
 Friction (see `gearcam.linkages.friction`) depends on the reactions: Newton's method solves for all
 of them. Where the determinant of its last step has another sign than without friction, the machine
 is locked: no moment of the driver moves it.
@@ -21,18 +25,20 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.linkages.bonds import FORCES, Bond, Hinge, SlidingJoint, Wrench
-from gearcam.linkages.coordinates import HeldMembers, WorkState
+from gearcam.linkages.contacts import Contact
+from gearcam.linkages.coordinates import HeldMembers, WorkCoordinate, WorkState
 from gearcam.linkages.efforts import Effort
 from gearcam.linkages.elements import Carriers
 from gearcam.linkages.friction import Friction
 from gearcam.linkages.known import GROUND, Known
 from gearcam.linkages.linkage import Linkage
+from gearcam.linkages.work import displaced_by
 from gearcam.numeric.arrays import Array, Mask, Plane
 
 _STEPS: Final = 30
@@ -82,6 +88,11 @@ class Structure(ShortRepr):
     def members(self) -> tuple[str, ...]:
         """Names of the members that move."""
         return tuple(dict.fromkeys(one.on for one in self.bonds))
+
+    @cached_property
+    def by_member(self) -> dict[str, tuple[Bond, ...]]:
+        """What joins and drives each member, its joint to the one before first."""
+        return {name: tuple(one for one in self.bonds if one.on == name) for name in self.members}
 
     @cached_property
     def slides(self) -> dict[str, SlidingJoint]:
@@ -154,6 +165,8 @@ class Reactions(ShortRepr):
     room : (n,) array
         Determinant of the equilibrium with friction over that without: 1 without friction, 0 where
         the machine is locked.
+    contacts : dict of str to (n,) array, N
+        Normal forces of contacts by their names (see `LineOfAction`).
     """
 
     structure: Structure
@@ -164,6 +177,7 @@ class Reactions(ShortRepr):
     work: Array
     lost: Array
     room: Array
+    contacts: dict[str, Array]
 
     def of(self, bond: Bond) -> Array:
         """Return the unknowns of a bond, (n, k)."""
@@ -217,6 +231,7 @@ def reactions(
     *,
     speed: float | None = None,
     friction: Mapping[Bond, Friction[Any]] | None = None,
+    contacts: Sequence[Contact] = (),
 ) -> Reactions:
     """Return the forces in the joints of a linkage.
 
@@ -232,6 +247,9 @@ def reactions(
         Of the driver.
     friction : mapping of Bond to Friction, optional
         Of hinges and guides.
+    contacts : sequence of Contact
+        What drives its shafts and slides; without any, drives exert pure moments, and forces along
+        guides.
 
     Returns
     -------
@@ -246,22 +264,86 @@ def reactions(
     state = WorkState(linkage, np.asarray(q, dtype=float), 0, speed)
     held = structure.held(state.known)
     equilibrium = _Equilibrium(structure, state.known)
-    loads, moment = equilibrium.loads(efforts, state, held)
+    loads, unheld = equilibrium.loads(efforts, state, held)
     pairs = [(one, own) for one, own in (friction or {}).items() if one in structure.columns]
-    free = equilibrium.solved(loads)
-    values, room, lost = equilibrium.rubbing(free, loads, pairs)
-    works = np.stack([one for bond in structure.bonds for one in bond.works(state.known)], axis=1)
+    pressing = [equilibrium.pressing(one, linkage, state, unheld) for one in contacts]
+    values, room, lost = equilibrium.rubbing(equilibrium.solved(loads), loads, pairs, pressing)
     balances = [np.asarray(one.balance(state).c[0]) for one in efforts]
     return Reactions(
         structure=structure,
         known=state.known,
         values=values,
         size=equilibrium.size,
-        moment=(values * works).sum(axis=1) - moment,
+        moment=_Driving.of(structure, state.known, unheld).exerted(values),
         work=sum(balances, start=np.zeros(state.q.shape)),
         lost=lost,
         room=room,
+        contacts={
+            one.name: each.normal(values) for one, each in zip(contacts, pressing, strict=True)
+        },
     )
+
+
+Unheld = Sequence[tuple[WorkCoordinate, Array]]
+"""Forces that act on drives, not on members, and what they do work on."""
+
+
+_Pairs = Sequence[tuple[Bond, Friction[Any]]]
+"""Joints with their friction."""
+
+
+class _Driving(NamedTuple):
+    """What the drives exert together in a displacement: linear in the unknowns.
+
+    Attributes
+    ----------
+    works : (n, u) array
+        Work of a unit of each unknown.
+    loads : (n,) array
+        Work of what acts on the drives.
+    """
+
+    works: Array
+    loads: Array
+
+    @classmethod
+    def of(cls, structure: Structure, displaced: Known, unheld: Unheld) -> _Driving:
+        """Return that of a displacement."""
+        works = [one for bond in structure.bonds for one in bond.works(displaced)]
+        loads = [np.asarray(on.rate(displaced, 0).c[0]) * force for on, force in unheld]
+        return cls(np.stack(works, axis=1), sum(loads, start=np.zeros(displaced.q.shape)))
+
+    def exerted(self, values: Array) -> Array:
+        """Return it with the unknowns `values`, (n, u)."""
+        return (values * self.works).sum(axis=1) - self.loads
+
+
+class _Pressing(NamedTuple):
+    """A contact in the equations.
+
+    Attributes
+    ----------
+    driving : _Driving
+        What it exerts.
+    columns : (2, n, r) array
+        What a unit of that does in each equation, with either sign: -1 and +1.
+    normals : (2, n) array
+        Its normal force.
+    """
+
+    driving: _Driving
+    columns: Array
+    normals: Array
+
+    def column(self, exerted: Array) -> Array:
+        """Return the column of the flank or wall that carries, (n, r)."""
+        back, forth = self.columns
+        return np.where(exerted[:, None] < 0.0, back, forth)
+
+    def normal(self, values: Array) -> Array:
+        """Return the normal force, (n,), N, with the unknowns `values`."""
+        exerted = self.driving.exerted(values)
+        return exerted * np.where(exerted < 0.0, *self.normals)
 
 
 class _Equilibrium:
@@ -298,25 +380,37 @@ class _Equilibrium:
 
     def loads(
         self, efforts: Sequence[Effort], state: WorkState, held: HeldMembers
-    ) -> tuple[Array, Array]:
-        """Return what acts on the members, (n, r), and the work of what acts on drives, (n,)."""
-        found, moment = np.zeros(self.matrix.shape[:2]), np.zeros(state.q.shape)
+    ) -> tuple[Array, Unheld]:
+        """Return what acts on the members, (n, r), and what acts on drives."""
+        found, unheld = np.zeros(self.matrix.shape[:2]), list[tuple[WorkCoordinate, Array]]()
         for effort in efforts:
             force = effort.acting(state)
             parts = list(effort.coordinate.wrenches(held, force))
             for member, wrench in parts:
                 self._put(found, member, wrench)
             if not parts:
-                rate: Array = np.asarray(effort.coordinate.rate(state.known, 0).c[0])
-                moment += force.real * rate
-        return found, moment
+                unheld.append((effort.coordinate, force.real))
+        return found, unheld
+
+    def pressing(
+        self, contact: Contact, linkage: Linkage, state: WorkState, unheld: Unheld
+    ) -> _Pressing:
+        """Return a contact in the equations."""
+        displaced = displaced_by(linkage, {contact.driven.name: contact.sense})
+        driving = _Driving.of(self.structure, displaced.at(state.q, 1), unheld)
+        lines = [contact.line(state.q, sign) for sign in (-1.0, 1.0)]
+        columns = np.zeros((2, *self.matrix.shape[:2]))
+        for column, line in zip(columns, lines, strict=True):
+            for member, wrench in contact.wrenches(self.structure.by_member, self.known, line):
+                self._put(column, member, wrench)
+        return _Pressing(driving, columns, np.stack([line.normal for line in lines]))
 
     def solved(self, loads: Array) -> Array:
         """Return the unknowns without friction, (n, u)."""
         return np.asarray(np.linalg.solve(self.matrix, -loads[..., None])[..., 0], dtype=float)
 
     def rubbing(
-        self, free: Array, loads: Array, pairs: Sequence[tuple[Bond, Friction[Any]]]
+        self, free: Array, loads: Array, pairs: _Pairs, pressing: Sequence[_Pressing]
     ) -> tuple[Array, Array, Array]:
         """Return the unknowns with friction, what is left of the determinant, and the work lost.
 
@@ -324,14 +418,17 @@ class _Equilibrium:
         are found, it locks.
         """
         values, room, lost = free, np.ones(len(free)), np.zeros(len(free))
+        for one in pressing:  # what the drives exert is the same without it
+            exerted = one.driving.exerted(free)
+            values = values + self.solved(one.column(exerted) * exerted[:, None])
         for share in _SHARES if pairs else ():
             some = [(bond, one.times(share)) for bond, one in pairs]
-            values, left, lost = self._settled(values, loads, some)
+            values, left, lost = self._settled(values, loads, some, pressing)
             room = np.where(room > 0.0, left, 0.0)
         return np.where(room[:, None] > 0.0, values, np.nan), room, lost
 
     def _settled(
-        self, values: Array, loads: Array, pairs: Sequence[tuple[Bond, Friction[Any]]]
+        self, values: Array, loads: Array, pairs: _Pairs, pressing: Sequence[_Pressing]
     ) -> tuple[Array, Array, Array]:
         """Return unknowns, determinant (0 where they are not found) and work by Newton's method."""
         plain, whole = np.linalg.slogdet(self.matrix)
@@ -346,6 +443,11 @@ class _Equilibrium:
                 rest += column * found.size[:, None]
                 tangent[:, :, own] += column[:, :, None] * found.slopes[:, None, :]
                 lost += found.lost
+            for each in pressing:
+                exerted = each.driving.exerted(values)
+                column = each.column(exerted)
+                rest += column * exerted[:, None]
+                tangent += column[:, :, None] * each.driving.works[:, None, :]
             sign, size = np.linalg.slogdet(tangent)
             room = sign * plain * np.exp(size - whole)
             singular = np.abs(room) < _SINGULAR

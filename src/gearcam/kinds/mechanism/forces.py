@@ -13,10 +13,10 @@ from gearcam.base.facts import Fact, Tree, extent
 from gearcam.base.findings import in_order, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.kinds.mechanism.asked import DEG
-from gearcam.kinds.mechanism.cam_contact import contact_forces
 from gearcam.kinds.mechanism.force_checks import CHECKS, JointedMachine
 from gearcam.kinds.mechanism.keys import center_of, way_of
 from gearcam.kinds.mechanism.loaded import BODY, work_of
+from gearcam.kinds.mechanism.pressed import contacts_of
 from gearcam.kinds.mechanism.torque import CHECKS as TORQUE
 from gearcam.kinds.mechanism.torque import DriverEffort
 from gearcam.linkages.bonds import FORCES, Bond, ChainDrive, Hinge, SlidingJoint
@@ -56,10 +56,6 @@ _NOISE: Final = 1e-9
 """Share of the largest value that is 0."""
 
 
-Contacts = dict[str, "Array"]
-"""Normal forces between cams and followers at n angles, N, by drives."""
-
-
 class JointForces:
     """The forces in the joints of a mechanism.
 
@@ -80,6 +76,7 @@ class JointForces:
         self.result = result
         demand_no_change_points(result, "forces in joints are")
         self.work = work_of(result.design, result.linkage, result.drives)
+        self.pressing = tuple(contacts_of(result.drives))
         self.structure = Structure.of(self.work.linkage)
         if not self.structure.members:
             what, near = "has no members, and so no joints", "the study of torque: gearcam torque"
@@ -149,7 +146,12 @@ class JointForces:
         friction = {bond: one.times(share) for bond, one in self.friction.items()}
         try:
             return reactions(
-                self.work.linkage, self.work.efforts, q, speed=self.work.speed, friction=friction
+                self.work.linkage,
+                self.work.efforts,
+                q,
+                speed=self.work.speed,
+                friction=friction,
+                contacts=self.pressing,
             )
         except UnheldError as error:
             what = f"the forces on {error.name} are not known: it is on no member"
@@ -162,9 +164,10 @@ class JointForces:
         """Return the sizes of the forces of joints and guides, (n,), N."""
         return {name: np.abs(found.force(bond)) for bond, name in self.joints.items()}
 
-    def contacts(self, q: Array) -> Contacts:
+    def contacts(self, found: Reactions) -> dict[str, Array]:
         """Return the normal forces between cams and followers, (n,), N, by drives."""
-        return dict(contact_forces(self.result, self.work, q))
+        cams = (one.spec.name for one in self.result.drives if one.spec.cam is not None)
+        return {name: found.contacts[name] for name in cams}
 
     def word(self, q: float) -> str:
         """Return a place of the master in words."""
@@ -261,8 +264,7 @@ def study_forces(result: MechanismResult, progress: Progress) -> StudyResult:
         q = _places(joints)
         found = joints.at(q)
         _demand_finite(joints, q, found)
-        contacts = joints.contacts(q)
-        machine = _machine(joints, q, found, contacts)
+        machine = _machine(joints, q, found)
         limits = result.design.limits
         effort = DriverEffort(peak=machine.peak[0], place=machine.peak[1], others={})
         findings = (*run_checks(CHECKS, machine, limits), *run_checks(TORQUE, effort, limits))
@@ -270,8 +272,8 @@ def study_forces(result: MechanismResult, progress: Progress) -> StudyResult:
         result=result,
         study=result.kind.studies["forces"],
         file="forces.csv",
-        table=_columns(joints, q, found, contacts),
-        group=_facts(joints, q, found, machine, contacts),
+        table=_columns(joints, q, found),
+        group=_facts(joints, q, found, machine),
         study_findings=in_order(findings),
         drawn=partial(_charts, joints, q, found),
         joints=partial(_arrows, result),
@@ -294,7 +296,7 @@ def _places(joints: JointForces) -> Array:
     known, width = joints.at(x), _NARROW * (x[-1] - x[0])
 
     def sought(found: Reactions) -> Array:
-        contacts = joints.contacts(found.known.q).values()
+        contacts = joints.contacts(found).values()
         both = [sign * one for one in (found.moment, *contacts) for sign in (1.0, -1.0)]
         rows = np.stack([*joints.sizes(found).values(), *both])
         return np.where(np.isfinite(rows), rows, -np.inf)
@@ -320,7 +322,7 @@ def _switches(joints: JointForces, x: Array, locked: Mask, width: float) -> Arra
     return np.concatenate(narrowing.changes(function, x[at], x[at + 1], width))
 
 
-def _machine(joints: JointForces, q: Array, found: Reactions, contacts: Contacts) -> JointedMachine:
+def _machine(joints: JointForces, q: Array, found: Reactions) -> JointedMachine:
     """Return the input of the checks."""
     largest, tipping = {}, {}
     for name, sizes in joints.sizes(found).items():
@@ -338,10 +340,10 @@ def _machine(joints: JointForces, q: Array, found: Reactions, contacts: Contacts
         if isinstance(bond, ChainDrive) and (found.carried(bond)[:, 0] < 0.0).any()
     }
     locked, pulled = found.locked, dict[str, tuple[float, str]]()
-    for name, force in contacts.items():
-        off = force < -_NOISE * np.abs(force).max()
+    for name, force in joints.contacts(found).items():
+        off = force < -_NOISE * np.nanmax(np.abs(force), initial=0.0)
         if off.any():
-            pulled[name] = (float(-force.min()), joints.ranges(q, off))
+            pulled[name] = (float(-np.nanmin(force)), joints.ranges(q, off))
     sizes = np.abs(found.moment)
     top = int(np.nanargmax(sizes)) if np.isfinite(sizes).any() else 0
     return JointedMachine(
@@ -368,7 +370,7 @@ def _free_share(joints: JointForces, q: Array) -> float:
     return math.floor(low * scale) / scale
 
 
-def _columns(joints: JointForces, q: Array, found: Reactions, contacts: Contacts) -> dict[str, Any]:
+def _columns(joints: JointForces, q: Array, found: Reactions) -> dict[str, Any]:
     """Return the columns of ``forces.csv``."""
     columns: dict[str, Any] = {
         f"{joints.result.driver[0]}_deg": DEG * q,
@@ -381,7 +383,7 @@ def _columns(joints: JointForces, q: Array, found: Reactions, contacts: Contacts
     if joints.result.speed is not None:
         columns["power_w"] = columns["driver_torque_nm"] * joints.result.speed
     columns |= _on_wheels(joints, found)
-    columns |= {f"{name}_contact_n": force for name, force in contacts.items()}
+    columns |= {f"{name}_contact_n": force for name, force in joints.contacts(found).items()}
     for bond, name in joints.labels.items():
         own = found.of(bond).T
         if isinstance(bond, Hinge | SlidingJoint):
@@ -422,9 +424,7 @@ def _efficiency(found: Reactions) -> Array:
     return np.where(ratio > 0.0, ratio, np.nan)
 
 
-def _facts(
-    joints: JointForces, q: Array, found: Reactions, machine: JointedMachine, contacts: Contacts
-) -> Tree:
+def _facts(joints: JointForces, q: Array, found: Reactions, machine: JointedMachine) -> Tree:
     """Return the facts of the study."""
     tree: Tree = {"torque_nm": _moment(joints, q, found)}
     if joints.friction and not found.locked.any():
@@ -444,7 +444,9 @@ def _facts(
         for bond, name in joints.joints.items()
     }
     tree["cams"] = {
-        name: {"contact_n": _contact(joints, name, q, force)} for name, force in contacts.items()
+        name: {"contact_n": _contact(joints, name, q, force)}
+        for name, force in joints.contacts(found).items()
+        if not np.isnan(force).all()
     } or None
     tree["locked"] = bool(found.locked.any())
     tree["error"] = Fact(found.apart, "moment by reactions less that by virtual work", unit="")
@@ -462,7 +464,7 @@ def _works(joints: JointForces) -> tuple[float, float, float]:
 
 
 def _contact(joints: JointForces, name: str, q: Array, force: Array) -> Fact:
-    most, least = int(force.argmax()), int(force.argmin())
+    most, least = int(np.nanargmax(force)), int(np.nanargmin(force))
     place = f"least at {joints.word(float(q[least]))}, largest at {joints.word(float(q[most]))}"
     label = f"normal force between the cam {name} and its follower"
     return Fact(extent(float(force[least]), float(force[most])), label, place=place, shown=True)

@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from gearcam.base.tolerances import DEFAULT
 from gearcam.kinds.mechanism.keys import center_of, way_of
 from gearcam.kinds.mechanism.moved import Moved, linear, moved_by
 from gearcam.linkages.elements import GivenMotion, GuideLine, Law, MemberPoint
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.jets import Jet, composed
 from gearcam.numeric.piecewise import extremes
 from gearcam.numeric.roots import bracketed_root
@@ -29,6 +29,8 @@ from gearcam.numeric.roots import bracketed_root
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.drives import MachineDrive
     from gearcam.linkages.elements import Element
+
+_Points = TypeVar("_Points", complex, Plane)
 
 _TURN: Final = 2.0 * math.pi
 
@@ -110,12 +112,12 @@ class PlacedDrive(ShortRepr):
     closed: bool
     result: Any = None
 
-    def machine(self, point: complex) -> complex:
-        """Return a `point` of the drive's frame in the machine, mm."""
+    def machine(self, point: _Points) -> _Points:
+        """Return a point of the drive's frame in the machine, mm, or points (n,)."""
         return complex(*self.spec.at) + self.vector(point)
 
-    def vector(self, way: complex) -> complex:
-        """Return a direction of the drive's frame in the machine."""
+    def vector(self, way: _Points) -> _Points:
+        """Return a direction of the drive's frame in the machine, or directions (n,)."""
         seen = way.conjugate() if self.spec.mirror else way
         return seen * cmath.exp(1j * self.spec.turn)
 

@@ -1,0 +1,108 @@
+"""Lines of action of the drives of a mechanism: teeth, and cams on their followers.
+
+All teeth of a pair that are cut by a rack, or by a pinion cutter of that rack, touch on a line
+through the pitch point, at the rack's pressure angle to the tangent of both centrodes there, on one
+side or the other by which flanks carry. A cam presses along the normal of the wall that carries.
+Flanks and walls are without friction.
+"""
+
+from __future__ import annotations
+
+import cmath
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gearcam.kinds.mechanism.keys import center_of, way_of
+from gearcam.linkages.contacts import Contact, LineOfAction, Moving
+from gearcam.mechanics.follower_loads import DrivenMotion
+from gearcam.results.nested import within
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from gearcam.kinds.mechanism.placed import PlacedDrive
+    from gearcam.mechanics.supports import Push
+    from gearcam.numeric.arrays import Array
+
+
+def contacts_of(drives: Sequence[PlacedDrive]) -> Iterator[Contact]:
+    """Yield what the pairs and the cams of a mechanism press on, by the names of the drives.
+
+    Parameters
+    ----------
+    drives : sequence of PlacedDrive
+        The drives.
+
+    Yields
+    ------
+    Contact
+        Of a pair, in the sense in which wheel 2 or the rack moves with the driver; of a cam, in
+        that of the lift: it is negative where the follower is pulled off, or of a groove, conjugate
+        cams, a yoke, a rib and a turret the other wall carries. Masses, springs and loads of the
+        cam's own design are not in it. Angles at which it is asked raise `InfeasibleError` if a
+        wall of a cam in space is undercut, or its turret is not held at all of them.
+    """
+    for number, drive in enumerate(drives):
+        if drive.result is None:
+            continue
+        *driver, driven = drive.moved
+        sense, line = drive.moved[driven].sense, partial(_of_cam, drive, f"drive[{number}].cam")
+        if drive.spec.pair is not None:  # turns of a ring and ways of a rack fall
+            sense = 1.0 if drive.result.pair.rolling.mate > 0 else -1.0
+            line = partial(_of_pair, drive)
+        yield Contact(
+            name=drive.spec.name,
+            driven=_moving(drive, driven),
+            sense=-sense if drive.spec.mirror and not drive.moved[driven].along else sense,
+            line=line,
+            driver=_moving(drive, driver[0]) if driver else None,
+        )
+
+
+def _moving(drive: PlacedDrive, word: str) -> Moving:
+    """Return a shaft or a slide of a drive."""
+    name = f"{drive.spec.name}.{word}"
+    return Moving(name, way_of(name) if drive.moved[word].along else center_of(name))
+
+
+def _of_pair(drive: PlacedDrive, q: Array, sign: float) -> LineOfAction:
+    """Return the line of action of the flanks that drive, or of those that hold back."""
+    pair, phi1 = drive.result.pair, drive.own(q)
+    guide, turned = pair.rolling.guide, np.exp(-1j * phi1)
+    frames = pair.rolling.tracks[0].frames(phi1, curved=False)
+    point = frames.p * turned  # the pitch point, where both wheels move against the tangent
+    force = -sign * frames.t * turned * cmath.exp(1j * sign * pair.rack.pressure_angle)
+    effect = guide.lever(point - guide.place, force)
+    return LineOfAction(drive.vector(force / effect), drive.machine(point), 1.0 / np.abs(effect))
+
+
+def _of_cam(drive: PlacedDrive, where: str, q: Array, sign: float) -> LineOfAction:
+    """Return the line of action of the wall that presses in the lift, or of the other one.
+
+    One that only presses pulls along the same line: what holds its follower on it does.
+    """
+    motion = drive.result.cam.motions[0]
+    with within(where):
+        pushes = list(_pushes(drive, q))
+    # of the wall that presses that way, if there is one
+    push = next((one for one in pushes if (sign * one.plain >= 0.0).all()), pushes[0])
+    force, at = push.unit / push.plain, push.at
+    guide = getattr(motion.follower, "guide", None)
+    if motion.clockwise and (guide is None or guide.mirrored):
+        force, at = -np.conj(force), -np.conj(at)
+    normal = 1.0 / (push.plain if len(pushes) == 1 else np.abs(push.plain))
+    return LineOfAction(drive.vector(force), drive.machine(at), normal)
+
+
+def _pushes(drive: PlacedDrive, q: Array) -> Iterator[Push]:
+    """Yield what the walls of a cam exert, of which each can press."""
+    motion = drive.result.cam.motions[0]
+    program, follower = motion.program, motion.follower
+    support = follower.held(drive.result.design.friction, program.range[1])
+    _, x = program.within(drive.own(q))
+    s, ds, d2s = program.derivatives(x, 2)
+    moves = DrivenMotion(x, s, ds, d2s)
+    for one in drive.result.touches:
+        yield one.push(moves, support, 0.0)[0]
