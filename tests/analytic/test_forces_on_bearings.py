@@ -19,6 +19,7 @@ from gearcam.kinds.mechanism.forces import JointForces
 from gearcam.linkages.bonds import Hinge, SlidingJoint
 from gearcam.linkages.known import GROUND
 from gearcam.linkages.reactions import Reactions
+from gearcam.mechanics.follower_loads import DrivenMotion
 from gearcam.mechanics.friction import WheelFrictionSpec
 from gearcam.meshing.forces import tooth_forces
 from gearcam.numeric.arrays import Array, Plane
@@ -71,7 +72,7 @@ def close(found: Any, known: Any, least: float = 0.0) -> None:
 # --- pairs ------------------------------------------------------------------------------------
 
 WAIST = {"type": "formula", "ratio": "1 + 0.3*cos(phi1)"}
-BENT = {"type": "formula", "ratio": "1 + 0.65*cos(2*phi1)"}
+BENT = {"type": "formula", "ratio": "1 + 0.5*cos(2*phi1)"}
 
 PAIRS: dict[str, Any] = {
     "ellipse": {"law": {"type": "ellipse", "eccentricity": 0.3},
@@ -85,7 +86,7 @@ PAIRS: dict[str, Any] = {
                 "pair": {"teeth": [41, 41], "module_mm": 3}},
     "ring": {"law": WAIST, "pair": {"type": "internal", "teeth": [36, 72], "module_mm": 2}},
     "ring, uneven": str(PROFILES / "ring_uneven.toml"),
-    "concave": {"law": BENT, "pair": {"teeth": [60, 60], "module_mm": 2}},
+    "concave": {"law": BENT, "pair": {"teeth": [120, 120], "module_mm": 1}},
     "rack": str(PROFILES / "feeder.toml"),
 }  # fmt: skip
 
@@ -118,6 +119,8 @@ def test_bearings_of_a_pair_carry_its_teeth(name: str, frame: str) -> None:
     low, high = made.result.linkage.span
     q = np.linspace(low, high, 48)[1:-1]
     found = made.at(q)
+    cutters = {one.cutter.kind for one in made.result.drives[0].result.pair.toothings}
+    assert "pinion" in cutters or not name.startswith(("ring", "concave"))
     driven = "d.rack" if name == "rack" else "d.wheel2"
     bonds = {label: bond for bond, label in made.labels.items()}
     drive = unknown(made, found, f"{driven}_drive")
@@ -246,15 +249,17 @@ def _highest(cam: dict[str, Any]) -> float:
 def _lifting(cam: dict[str, Any]) -> float:
     """+1 if lift turns the arm of a cam that turns counter-clockwise by itself, else -1."""
     made: Any = gc.build(gc.design(cam))
-    return float(np.sign(made.follower.held(made.design.friction, 0.0).spin)) if hasattr(
-        made.follower.held(made.design.friction, 0.0), "spin"
-    ) else 1.0
+    return (
+        float(np.sign(made.follower.held(made.design.friction, 0.0).spin))
+        if hasattr(made.follower.held(made.design.friction, 0.0), "spin")
+        else 1.0
+    )
 
 
 # --- whole machines ---------------------------------------------------------------------------
 
 
-def on_the_machine(made: JointForces, found: Reactions, loads: dict[str, complex]) -> tuple[Any, Any]:
+def on_the_machine(found: Reactions, loads: dict[str, complex]) -> tuple[Any, Any]:
     """Force and moment about the origin of all that the frame and loads exert, but the driver's."""
     total, moment = np.zeros(found.moment.shape, dtype=complex), np.zeros(found.moment.shape)
     for bond in found.structure.bonds:
@@ -266,3 +271,166 @@ def on_the_machine(made: JointForces, found: Reactions, loads: dict[str, complex
     for joint, own in loads.items():
         total, moment = total + own, moment + np.imag(np.conj(found.known.place(joint)) * own)
     return total, moment
+
+
+def _slider(begin: str, x: float) -> dict[str, Any]:
+    """A slider-crank behind a joint."""
+    return {
+        "guide": [{"name": "bed", "at_mm": [x, 10], "direction_deg": 20}],
+        "dyad": [{"type": "RRT", "from": begin, "to": "bed", "joint": "C",
+                  "members": ["rod", "ram"], "lengths_mm": [150, 0]}],
+    }  # fmt: skip
+
+
+def _behind(shaft: str, x: float) -> dict[str, Any]:
+    crank = {"name": "out", "on": shaft, "joint": "B", "length_mm": 35}
+    return {"crank": [crank], **_slider("B", x)}
+
+
+CONE = {**DRUM, "follower": {**DRUM["follower"], "cone_deg": "apex"}}
+
+WHOLE: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
+    "pair": ({"pair": PAIRS["ellipse"]}, _behind("d.wheel2", 120)),
+    "ring": ({"pair": PAIRS["ring"]}, _behind("d.wheel2", 0)),
+    "ring, mirrored": ({"pair": PAIRS["ring"], **FRAMES["mirrored"]}, _behind("d.wheel2", 0)),
+    "rack": (
+        {"pair": PAIRS["rack"], **FRAMES["turned"]},
+        {"slide": [{"name": "out", "on": "d.rack", "joint": "C", "at_mm": [10, 5]}]},
+    ),
+    "follower": (
+        {"cam": TAPPET, **FRAMES["mirrored"]},
+        {"slide": [{"name": "out", "on": "d.follower", "joint": "C", "at_mm": [10, 5]}]},
+    ),
+    "lever": ({"cam": LEVER, **FRAMES["turned"]}, _behind("d.follower", 150)),
+}
+"""A drive whose both shafts hold members, and what it moves."""
+
+
+@pytest.mark.parametrize("name", WHOLE)
+def test_the_frame_and_the_loads_hold_a_machine(name: str) -> None:
+    """Forces between wheels, or cam and follower, are within it: the frame holds it as a whole."""
+    drive, tables = WHOLE[name]
+    shaft = "d.wheel1" if "pair" in drive else "d.shaft"
+    handle = {"name": "handle", "on": shaft, "joint": "H", "length_mm": 20}
+    loads = {"H": 30 - 50j, "C": 200 + 90j}
+    made = joints(
+        drive, **tables | {"crank": [handle, *tables.get("crank", [])]},
+        load=[{"on": on, "force_n": [one.real, one.imag]} for on, one in loads.items()],
+    )  # fmt: skip
+    low, high = made.result.linkage.span
+    found = made.at(np.linspace(low, high, 30)[1:-1])
+    total, moment = on_the_machine(found, loads)
+    assert np.abs(total).max() < 1e-9
+    moment = moment + found.moment / found.known.rate(shaft)
+    assert np.abs(moment).max() < 1e-9 * np.abs(found.moment).max()
+
+
+def test_a_shaft_without_members_is_that_of_a_crank_that_turns_with_it() -> None:
+    """Two cams on one shaft press on the same bearing."""
+    tables = {
+        "drives": [{"name": "e", "cam": LEVER, "turn_deg": 100, "phase_deg": 40}],
+        "slide": [{"name": "a", "on": "d.follower", "joint": "A"}],
+        "crank": [
+            {"name": "handle", "on": "d.shaft", "joint": "H", "length_mm": 20},
+            {"name": "b", "on": "e.follower", "joint": "B", "length_mm": 40},
+        ],
+    }
+    loads = {"A": -30 - 500j, "B": 90 + 200j}
+    made = joints(
+        {"cam": TAPPET}, **tables,
+        load=[{"on": on, "force_n": [one.real, one.imag]} for on, one in loads.items()],
+    )  # fmt: skip
+    found = made.at(np.linspace(0.0, 6.0, 30))
+    total, moment = on_the_machine(found, loads)
+    assert np.abs(total).max() < 1e-9
+    assert np.abs(moment + found.moment).max() < 1e-9 * np.abs(found.moment).max()
+
+
+def test_a_plate_is_held_against_its_follower() -> None:
+    """The force that moves the plate acts at its joint."""
+    plate = str(PROFILES / "translating_cam.toml")
+    travel = gc.build(gc.load(plate)).program.period  # pyright: ignore[reportAttributeAccessIssue]
+    loads = {"P": -90 + 20j, "F": 40 - 300j}
+    made = joints(
+        {"even": True},
+        drives=[{"name": "c", "cam": plate, "slide": f"{0.45 * travel}*(1.1 - cos(q))",
+                 "at_mm": [20, 10], "turn_deg": 25}],
+        slide=[{"name": "low", "on": "c.plate", "joint": "P"},
+               {"name": "high", "on": "c.follower", "joint": "F"}],
+        load=[{"on": on, "force_n": [one.real, one.imag]} for on, one in loads.items()],
+    )  # fmt: skip
+    found = made.at(np.linspace(0.2, 2.9, 30))
+    pushing = found.moment / found.known.rate("c.plate") * found.known.direction("c.plate.way")
+    total, moment = on_the_machine(found, loads)
+    assert np.abs(total + pushing).max() < 1e-9
+    moment = moment + np.imag(np.conj(found.known.place("P")) * pushing)
+    assert np.abs(moment).max() < 1e-9 * np.abs(found.moment).max()
+
+
+@pytest.mark.parametrize("rotation", ["ccw", "cw"])
+@pytest.mark.parametrize("cam", [DRUM, CONE], ids=["cylinder", "cone"])
+def test_a_guide_along_a_drum_carries_its_roller(cam: dict[str, Any], rotation: str) -> None:
+    """In the plane of the follower: all normals meet the roller's axis, also of a cone."""
+    cam = {**cam, "cam": {**cam["cam"], "rotation": rotation}}
+    slide = {"name": "out", "on": "d.follower", "joint": "P"}
+    made = joints({"cam": cam}, slide=[slide], load=[{"on": "out", "force_n": -200}])
+    q = np.linspace(0.1, 2.5, 9)
+    drum, found = made.result.drives[0].result, made.at(q)
+    s, ds, d2s = drum.program.derivatives(q, 2)
+    support = drum.cam.guide.support(drum.design.friction)
+    (push,) = (
+        one
+        for touch in drum.touches
+        if ((one := touch.push(DrivenMotion(q, s, ds, d2s), support, 0.0)[0]).plain > 0.0).all()
+    )
+    hand = 1.0 if rotation == "ccw" else -1.0
+    close(force(made, found, "d.follower"), -200.0 * hand * push.force[:, 1] / push.plain)
+    assert push.moment[:, 0] == pytest.approx(0.0, abs=1e-12)
+    assert unknown(made, found, "d.follower") == pytest.approx(0.0, abs=1e-9)
+
+
+# --- which flank or wall, with friction and several members -------------------------------------
+
+
+def test_the_shaft_has_what_all_its_members_and_loads_ask_of_it() -> None:
+    """Two cranks, a hoist, whose drum is on no member, and their sum by virtual work."""
+    tables = {
+        "crank": [{"name": "one", "on": "d.wheel2", "joint": "A", "length_mm": 20},
+                  {"name": "two", "on": "d.wheel2", "joint": "B", "length_mm": 30}],
+        "hoist": [{"name": "bucket", "on": "d.wheel2", "joint": "K", "radius_mm": 15,
+                   "at_mm": [300, 0]}],
+        "load": [{"on": "A", "force_n": [50, 10]}, {"on": "B", "force_n": [0, -90]},
+                 {"on": "bucket", "force_n": 300}],
+    }  # fmt: skip
+    made = joints({"pair": PAIRS["ellipse"], "range_deg": [0, 350]}, **tables)
+    q = np.linspace(0.1, 6.0, 25)
+    found, work = made.at(q), made.work.on({"d.wheel2": 1.0}, q)
+    hinges = [force(made, found, f"d.wheel2_{one}") for one in ("one", "two")]
+    known = -by_teeth(made, q, work)
+    close(hinges[0] + 50 + 10j, known)
+    close(hinges[1], np.full(q.shape, 90j))
+    assert (work > 0.0).any()
+    assert (work < 0.0).any()
+
+
+def test_with_friction_the_flanks_that_carry_are_those_of_all_moments() -> None:
+    """Where a load hardly drives, friction of the bearing turns it into one that is driven."""
+    tables = {
+        "crank": [{"name": "out", "on": "d.wheel2", "joint": "P", "length_mm": 20}],
+        "load": [{"on": "out", "formula": "10*cos(3*q)"}],
+        "mass": [{"of": "out", "mass_kg": 100, "at_mm": [0, 0]}],
+        "gravity": {"direction_deg": -90},
+        "friction": {"joint": 0.2, "journal_radius_mm": 30},
+    }
+    made = joints({"pair": PAIRS["ellipse"]}, **tables)
+    q = np.linspace(0.1, 6.0, 60)
+    found, smooth = made.at(q), made.at(q, 0.0)
+    drive, bearing = unknown(made, found, "d.wheel2_drive"), force(made, found, "d.wheel2")
+    alone = unknown(made, smooth, "d.wheel2_drive")
+    assert ((alone < 0.0) & (drive > 0.0)).sum() > 3  # other flanks carry
+    assert ((alone < 0.0) & (drive < 0.0)).sum() > 3
+    known = 100 * 9.80665j - by_teeth(made, q, drive)
+    close(bearing, known)
+    arm = 30.0 * math.sin(math.atan(0.2))
+    close(drive, -1e4 * np.cos(3.0 * q) + arm * np.abs(bearing))
+    assert found.apart < 1e-9

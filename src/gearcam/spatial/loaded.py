@@ -238,9 +238,12 @@ class RollerTouch(Touch):
         force, moment = (
             (part[..., None] * one).sum(axis=1) for one in (each, cross(points - placed, each))
         )
+        unit, middle = self.guide.in_plane(force), (part * plane).sum(axis=1)
+        arms = np.conj(plane - middle[:, None]) * self.guide.in_plane(each)
+        beside = (part * arms.imag).sum(axis=1) / np.abs(unit) ** 2
         push = SpacePush(
-            at=(part * plane).sum(axis=1),
-            unit=self.guide.in_plane(force),
+            at=middle - 1j * unit * beside,  # on the line of the whole force in the plane
+            unit=unit,
             plain=(part * near).sum(axis=1),
             effect=(part * (near + around * lifting[0] + along * lifting[1])).sum(axis=1),
             arm=(part * dot(each, moved)).sum(axis=1),
