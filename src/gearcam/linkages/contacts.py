@@ -4,7 +4,7 @@ A drive is a bond with one unknown, a moment on a shaft or a force along a guide
 force along a line of action, whose moment or component this is. The rest of that force, which does
 no work, is carried by the bearing of the shaft or by the guide, and the opposite one by those of
 the shaft or slide that drives. So a contact adds no unknown: its force is in proportion to what the
-drives of all that hangs on the shaft exert together.
+drives of all that is on the shaft exert together.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ class Moving(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Contact(ShortRepr):
+class DriveContact(ShortRepr):
     """What drives a shaft or a slide by a contact.
 
     Parameters
@@ -69,9 +69,9 @@ class Contact(ShortRepr):
         What it drives.
     sense : float
         +1 or -1: direction in which a positive moment or force turns or moves this.
-    line : callable
-        ``line(q, sign) -> LineOfAction`` at angles of the linkage's driver, where that moment or
-        force has the sign: one flank or wall carries, or the other.
+    lines : callable
+        ``lines(q)`` returns two `LineOfAction` at angles of the linkage's driver: where that moment
+        or force is negative, and where it is positive. One flank or wall carries, or the other.
     driver : Moving, optional
         What presses, on which the opposite force acts.
     """
@@ -79,7 +79,7 @@ class Contact(ShortRepr):
     name: str
     driven: Moving
     sense: float
-    line: Callable[[Array, float], LineOfAction]
+    lines: Callable[[Array], tuple[LineOfAction, LineOfAction]]
     driver: Moving | None = None
 
     def wrenches(

@@ -31,7 +31,7 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.linkages.bonds import FORCES, Bond, Hinge, SlidingJoint, Wrench
-from gearcam.linkages.contacts import Contact
+from gearcam.linkages.contacts import DriveContact
 from gearcam.linkages.coordinates import HeldMembers, WorkCoordinate, WorkState
 from gearcam.linkages.efforts import Effort
 from gearcam.linkages.elements import Carriers
@@ -231,7 +231,7 @@ def reactions(
     *,
     speed: float | None = None,
     friction: Mapping[Bond, Friction[Any]] | None = None,
-    contacts: Sequence[Contact] = (),
+    contacts: Sequence[DriveContact] = (),
 ) -> Reactions:
     """Return the forces in the joints of a linkage.
 
@@ -247,7 +247,7 @@ def reactions(
         Of the driver.
     friction : mapping of Bond to Friction, optional
         Of hinges and guides.
-    contacts : sequence of Contact
+    contacts : sequence of DriveContact
         What drives its shafts and slides; without any, drives exert pure moments, and forces along
         guides.
 
@@ -393,12 +393,12 @@ class _Equilibrium:
         return found, unheld
 
     def pressing(
-        self, contact: Contact, linkage: Linkage, state: WorkState, unheld: Unheld
+        self, contact: DriveContact, linkage: Linkage, state: WorkState, unheld: Unheld
     ) -> _Pressing:
         """Return a contact in the equations."""
         displaced = displaced_by(linkage, {contact.driven.name: contact.sense})
         driving = _Driving.of(self.structure, displaced.at(state.q, 1), unheld)
-        lines = [contact.line(state.q, sign) for sign in (-1.0, 1.0)]
+        lines = contact.lines(state.q)
         columns = np.zeros((2, *self.matrix.shape[:2]))
         for column, line in zip(columns, lines, strict=True):
             for member, wrench in contact.wrenches(self.structure.by_member, self.known, line):
@@ -421,10 +421,12 @@ class _Equilibrium:
         for one in pressing:  # what the drives exert is the same without it
             exerted = one.driving.exerted(free)
             values = values + self.solved(one.column(exerted) * exerted[:, None])
+        finite = np.isfinite(values).all(axis=1)
         for share in _SHARES if pairs else ():
             some = [(bond, one.times(share)) for bond, one in pairs]
             values, left, lost = self._settled(values, loads, some, pressing)
             room = np.where(room > 0.0, left, 0.0)
+        room = np.where(finite, room, 1.0)  # what has no finite forces is not locked
         return np.where(room[:, None] > 0.0, values, np.nan), room, lost
 
     def _settled(

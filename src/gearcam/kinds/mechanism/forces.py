@@ -15,7 +15,7 @@ from gearcam.base.numerals import formatted
 from gearcam.kinds.mechanism.asked import DEG
 from gearcam.kinds.mechanism.force_checks import CHECKS, JointedMachine
 from gearcam.kinds.mechanism.keys import center_of, way_of
-from gearcam.kinds.mechanism.loaded import BODY, work_of
+from gearcam.kinds.mechanism.loaded import work_of
 from gearcam.kinds.mechanism.pressed import contacts_of
 from gearcam.kinds.mechanism.torque import CHECKS as TORQUE
 from gearcam.kinds.mechanism.torque import DriverEffort
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from gearcam.kinds.mechanism.parts.bearing import BearingSpec
+    from gearcam.kinds.mechanism.placed import PlacedDrive
     from gearcam.kinds.mechanism.result import MechanismResult
     from gearcam.linkages.friction import Friction
     from gearcam.linkages.linkage import Linkage
@@ -495,14 +496,23 @@ def _assumed(joints: JointForces) -> str:
         words.append("no masses")
     if GRAVITY not in parts:
         words.append("no gravity")
-    if any(drive.spec.pair is not None for drive in joints.result.drives):
-        words.append("bearings of wheels without the force of their teeth")
-    cams = [drive.spec.name for drive in joints.result.drives if drive.spec.cam is not None]
-    if any(f"{name}.shaft{BODY}" in joints.structure.members for name in cams):
-        words.append("bearings of cams without the force of their followers")
-    if cams:
-        words.append("guides and pivots of followers without the side force of their cams")
+    drives = joints.result.drives
+    if joints.friction:
+        sorts = {"teeth": "pair", "cams": "cam"}
+        rubbing = [
+            name for name, key in sorts.items() if any(key == one.spec.key for one in drives)
+        ]
+        words += [f"no friction of {' and '.join(rubbing)}"] if rubbing else []
+    if any(_loaded(drive) for drive in drives):
+        words.append("no loads, springs and masses of the cams' own designs")
     return ", ".join(words) or "the driver turns evenly"
+
+
+def _loaded(drive: PlacedDrive) -> bool:
+    """Return whether something acts on the follower of a drive in the cam's own design."""
+    tables = ("load", "spring", "mass")
+    design = drive.result.design if drive.spec.cam is not None else None
+    return any(getattr(design, title, ()) for title in tables)
 
 
 def _arrows(result: MechanismResult, scene: Scene) -> Iterator[JointForce]:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gearcam.kinds.mechanism.keys import center_of, way_of
-from gearcam.linkages.contacts import Contact, LineOfAction, Moving
+from gearcam.linkages.contacts import DriveContact, LineOfAction, Moving
 from gearcam.mechanics.follower_loads import DrivenMotion
 from gearcam.results.nested import within
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from gearcam.numeric.arrays import Array
 
 
-def contacts_of(drives: Sequence[PlacedDrive]) -> Iterator[Contact]:
+def contacts_of(drives: Sequence[PlacedDrive]) -> Iterator[DriveContact]:
     """Yield what the pairs and the cams of a mechanism press on, by the names of the drives.
 
     Parameters
@@ -37,7 +37,7 @@ def contacts_of(drives: Sequence[PlacedDrive]) -> Iterator[Contact]:
 
     Yields
     ------
-    Contact
+    DriveContact
         Of a pair, in the sense in which wheel 2 or the rack moves with the driver; of a cam, in
         that of the lift: it is negative where the follower is pulled off, or of a groove, conjugate
         cams, a yoke, a rib and a turret the other wall carries. Masses, springs and loads of the
@@ -48,15 +48,15 @@ def contacts_of(drives: Sequence[PlacedDrive]) -> Iterator[Contact]:
         if drive.result is None:
             continue
         *driver, driven = drive.moved
-        sense, line = drive.moved[driven].sense, partial(_of_cam, drive, f"drive[{number}].cam")
+        sense, lines = drive.moved[driven].sense, partial(_of_cam, drive, f"drive[{number}].cam")
         if drive.spec.pair is not None:  # turns of a ring and ways of a rack fall
             sense = 1.0 if drive.result.pair.rolling.mate > 0 else -1.0
-            line = partial(_of_pair, drive)
-        yield Contact(
+            lines = partial(_of_pair, drive)
+        yield DriveContact(
             name=drive.spec.name,
             driven=_moving(drive, driven),
             sense=-sense if drive.spec.mirror and not drive.moved[driven].along else sense,
-            line=line,
+            lines=lines,
             driver=_moving(drive, driver[0]) if driver else None,
         )
 
@@ -67,33 +67,43 @@ def _moving(drive: PlacedDrive, word: str) -> Moving:
     return Moving(name, way_of(name) if drive.moved[word].along else center_of(name))
 
 
-def _of_pair(drive: PlacedDrive, q: Array, sign: float) -> LineOfAction:
-    """Return the line of action of the flanks that drive, or of those that hold back."""
+def _of_pair(drive: PlacedDrive, q: Array) -> tuple[LineOfAction, LineOfAction]:
+    """Return the lines of action of the flanks that hold back, and of those that drive."""
     pair, phi1 = drive.result.pair, drive.own(q)
     guide, turned = pair.rolling.guide, np.exp(-1j * phi1)
     frames = pair.rolling.tracks[0].frames(phi1, curved=False)
-    point = frames.p * turned  # the pitch point, where both wheels move against the tangent
-    force = -sign * frames.t * turned * cmath.exp(1j * sign * pair.rack.pressure_angle)
-    effect = guide.lever(point - guide.place, force)
-    return LineOfAction(drive.vector(force / effect), drive.machine(point), 1.0 / np.abs(effect))
+    point, tangent = frames.p * turned, frames.t * turned  # of the pitch point
+
+    def line(sign: float) -> LineOfAction:
+        # both wheels move against the tangent there; flanks push off the driver's shaft
+        way = -sign * tangent * cmath.exp(1j * sign * pair.rack.pressure_angle)
+        effect = guide.lever(point - guide.place, way)
+        force = drive.vector(way / effect)
+        return LineOfAction(force, drive.machine(point), 1.0 / np.abs(effect))
+
+    return line(-1.0), line(1.0)
 
 
-def _of_cam(drive: PlacedDrive, where: str, q: Array, sign: float) -> LineOfAction:
-    """Return the line of action of the wall that presses in the lift, or of the other one.
+def _of_cam(drive: PlacedDrive, where: str, q: Array) -> tuple[LineOfAction, LineOfAction]:
+    """Return the lines of action of the wall that presses against the lift, and in the lift.
 
     One that only presses pulls along the same line: what holds its follower on it does.
     """
     motion = drive.result.cam.motions[0]
+    guide = getattr(motion.follower, "guide", None)
+    mirrored = motion.clockwise and (guide is None or guide.mirrored)
     with within(where):
         pushes = list(_pushes(drive, q))
-    # of the wall that presses that way, if there is one
-    push = next((one for one in pushes if (sign * one.plain >= 0.0).all()), pushes[0])
-    force, at = push.unit / push.plain, push.at
-    guide = getattr(motion.follower, "guide", None)
-    if motion.clockwise and (guide is None or guide.mirrored):
-        force, at = -np.conj(force), -np.conj(at)
-    normal = 1.0 / (push.plain if len(pushes) == 1 else np.abs(push.plain))
-    return LineOfAction(drive.vector(force), drive.machine(at), normal)
+
+    def line(sign: float) -> LineOfAction:
+        push = next((one for one in pushes if (sign * one.plain >= 0.0).all()), pushes[0])
+        force, at = push.unit / push.plain, push.at
+        if mirrored:
+            force, at = -np.conj(force), -np.conj(at)
+        normal = 1.0 / (push.plain if len(pushes) == 1 else np.abs(push.plain))
+        return LineOfAction(drive.vector(force), drive.machine(at), normal)
+
+    return line(-1.0), line(1.0)
 
 
 def _pushes(drive: PlacedDrive, q: Array) -> Iterator[Push]:
