@@ -393,14 +393,14 @@ def test_a_guide_along_a_drum_carries_its_roller(cam: dict[str, Any], rotation: 
 
 
 def test_the_shaft_has_what_all_its_members_and_loads_ask_of_it() -> None:
-    """Two cranks, a hoist, whose drum is on no member, and their sum by virtual work."""
+    """Two cranks, a hoist, whose drum is on no member, a torque: their sum by virtual work."""
     tables = {
         "crank": [{"name": "one", "on": "d.wheel2", "joint": "A", "length_mm": 20},
                   {"name": "two", "on": "d.wheel2", "joint": "B", "length_mm": 30}],
         "hoist": [{"name": "bucket", "on": "d.wheel2", "joint": "K", "radius_mm": 15,
                    "at_mm": [300, 0]}],
         "load": [{"on": "A", "force_n": [50, 10]}, {"on": "B", "force_n": [0, -190]},
-                 {"on": "bucket", "force_n": 60}],
+                 {"on": "bucket", "force_n": 60}, {"on": "d.wheel2", "torque_nm": 1.5}],
     }  # fmt: skip
     made = joints({"pair": PAIRS["ellipse"], "range_deg": [0, 350]}, **tables)
     q = np.linspace(0.1, 6.0, 25)

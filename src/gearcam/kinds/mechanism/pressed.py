@@ -90,15 +90,13 @@ def _of_cam(drive: PlacedDrive, where: str, q: Array) -> tuple[LineOfAction, Lin
     One that only presses pulls along the same line: what holds its follower on it does.
     """
     motion = drive.result.cam.motions[0]
-    guide = getattr(motion.follower, "guide", None)
-    mirrored = motion.clockwise and (guide is None or guide.mirrored)
     with within(where):
         pushes = list(_pushes(drive, q))
 
     def line(sign: float) -> LineOfAction:
         push = next((one for one in pushes if (sign * one.plain >= 0.0).all()), pushes[0])
         force, at = push.unit / push.plain, push.at
-        if mirrored:
+        if motion.clockwise:  # the plane of its motion is seen in a mirror
             force, at = -np.conj(force), -np.conj(at)
         normal = 1.0 / (push.plain if len(pushes) == 1 else np.abs(push.plain))
         return LineOfAction(drive.vector(force), drive.machine(at), normal)
