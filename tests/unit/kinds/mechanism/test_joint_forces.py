@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -318,3 +319,49 @@ def test_a_pair_takes_the_moment_of_its_machine_with_friction(tmp_path: Any) -> 
     own = np.max(made.columns["wheel2_torque_nm"])
     assert loaded.facts["forces.load_nm.max"] == pytest.approx(own, rel=1e-3)
     assert own > np.max(gc.build(machine).study("torque").columns["wheel2_torque_nm"])
+
+
+@pytest.mark.parametrize(("cam", "said"), [("valve_train", True), ("tappet", False), ("", False)])
+def test_what_acts_in_the_own_design_of_a_cam_is_left_out(cam: str, said: bool) -> None:
+    own = gc.load(f"profiles/{cam}.toml").to_dict() if cam else MACHINES["table on two cams"]
+    drive = {"name": "cam", "cam": own if cam else own["drive"][0]["cam"]}
+    out = {"name": "out", "on": "cam.follower", "joint": "P"}
+    made = gc.build(gc.design({
+        "kind": "mechanism", "name": "m", "drive": [drive], "slide": [out],
+        "load": [{"on": "out", "force_n": -100}], "friction": {"guide": 0.1},
+    })).study("forces").facts["forces.assumptions"]  # fmt: skip
+    assert ("no loads, springs and masses of the cams' own designs" in made) == said
+    assert "no friction of cams" in made
+
+
+def test_teeth_are_without_friction() -> None:
+    tables = {**MACHINES["slide behind a pair"], "load": [{"on": "C", "force_n": [-100, 0]}]}
+    words = [
+        gc.build(gc.design({"kind": "mechanism", "name": "m", **tables, **friction}))
+        .study("forces")
+        .facts["forces.assumptions"]
+        for friction in ({}, {"friction": {"guide": 0.1, "joint": 0.1, "journal_radius_mm": 5}})
+    ]
+    assert words == [
+        "no friction, at rest, without inertia, no masses, no gravity",
+        "at rest, without inertia, no masses, no gravity, no friction of teeth",
+    ]
+
+
+@pytest.mark.parametrize("friction", [{}, {"friction": {"guide": 0.1}}])
+def test_a_contact_that_has_no_force_is_not_taken_for_a_lock(friction: Any) -> None:
+    """A cam that presses across its lift would have to press without end."""
+    tables = {**MACHINES["table on two cams"], "load": [{"on": "T", "force_n": [-90, -50]}]}
+    made = JointForces(
+        gc.build(gc.design({"kind": "mechanism", "name": "m", **tables, **friction}))
+    )
+    (first, *others), q = made.pressing, np.array([0.4, 0.5])
+
+    def endless(places: Any) -> Any:
+        return tuple(one._replace(force=one.force / (places != 0.4)) for one in first.lines(places))
+
+    made.pressing = (replace(first, lines=endless), *others)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found = made.at(q)
+    assert not found.locked.any()
+    assert [*np.isfinite(found.values).all(axis=1)] == [False, True]
