@@ -23,6 +23,7 @@ from gearcam.mechanics.follower_loads import DrivenMotion
 from gearcam.mechanics.friction import WheelFrictionSpec
 from gearcam.meshing.forces import tooth_forces
 from gearcam.numeric.arrays import Array, Plane
+from gearcam.numeric.roots import bracketed_root
 from helpers_machines import LEVER, TAPPET
 from helpers_pairs import PROFILES
 
@@ -344,6 +345,29 @@ def test_a_shaft_without_members_is_that_of_a_crank_that_turns_with_it() -> None
     total, moment = on_the_machine(found, loads)
     assert np.abs(total).max() < 1e-9
     assert np.abs(moment + found.moment).max() < 1e-9 * np.abs(found.moment).max()
+
+
+def test_a_crank_that_turns_as_a_wheel_does_for_an_instant_is_not_on_its_shaft() -> None:
+    crank = {"name": "beside", "on": "e", "joint": "B", "length_mm": 20}
+    bucket = {"name": "bucket", "on": "d.wheel2", "joint": "K", "radius_mm": 15, "at_mm": [300, 0]}
+    made = joints(
+        {"pair": PAIRS["ellipse"], "range_deg": [0, 350]},
+        drives=[{"name": "e", "even": True, "at_mm": [_distance(PAIRS["ellipse"]), 0]}],
+        crank=[crank], hoist=[bucket], load=[{"on": "bucket", "force_n": 60}],
+    )  # fmt: skip
+    track = made.result.linkage.track
+    rates = [lambda q, name=name: track(name, q, 1).derivatives()[1] for name in ("d.wheel2", "e")]
+    q = bracketed_root(lambda q: rates[0](q) - rates[1](q), np.array([0.1]), np.array([3.0]), 1e-14)
+    assert rates[0](q) == pytest.approx(rates[1](q), abs=1e-12)
+    found = made.at(q)
+    assert np.abs(found.contacts["d"]).min() > 1.0
+    assert np.abs(force(made, found, "e")).max() == 0.0
+
+
+def _distance(pair: dict[str, Any]) -> float:
+    """The centre distance of a pair."""
+    made: Any = gc.build(gc.design({"kind": "gear-pair", "name": "p", **pair}))
+    return made.pair.center_distance
 
 
 def test_a_plate_is_held_against_its_follower() -> None:

@@ -51,10 +51,13 @@ class Moving(NamedTuple):
         Quantity: its turn or its way.
     stands : str
         Joint in which the shaft stands, or frame of the guide.
+    member : str
+        Whose bearing or guide holds it (see `carrier`); empty if none does.
     """
 
     name: str
     stands: str
+    member: str
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -97,10 +100,9 @@ class DriveContact(ShortRepr):
             The contact.
         """
         for one, force in ((self.driven, line.force), (self.driver, -line.force)):
-            member = one and _carrier(bonds, known, one)
-            if one and member:
-                drive = next(bond for bond in bonds[member] if isinstance(bond, _DRIVES))
-                yield member, _idle(drive, one, known, Wrench.at(line.at, force))
+            if one and one.member:
+                drive = next(bond for bond in bonds[one.member] if isinstance(bond, _DRIVES))
+                yield one.member, _idle(drive, one, known, Wrench.at(line.at, force))
 
 
 _DRIVES: Final = (ShaftDrive, PushDrive)
@@ -115,26 +117,33 @@ def _idle(drive: Bond, one: Moving, known: Known, whole: Wrench) -> Wrench:
     return Wrench.at(known.place(one.stands), whole.force)
 
 
-def _carrier(bonds: Mapping[str, tuple[Bond, ...]], known: Known, wanted: Moving) -> str:
-    """Return the member whose bearing or guide holds a shaft or slide; empty if none is known.
+def carrier(bonds: Mapping[str, tuple[Bond, ...]], known: Known, name: str, stands: str) -> str:
+    """Return the member whose bearing or guide holds a shaft or slide; empty if none does.
 
-    Of several members the first; one on another shaft at the same place, which turns as it does,
-    is on the same shaft.
+    Of several members it is the first. One on another shaft at the same place, which turns as this
+    does, is on the same shaft.
+
+    Parameters
+    ----------
+    bonds : mapping of str to tuple of Bond
+        What joins and drives each member, its joint to the one before first.
+    known : Known
+        The motion, over the whole range.
+    name, stands : str
+        See `Moving`.
     """
 
     def bears(one: Bond, driving: Bond) -> bool:
         if isinstance(one, SlidingJoint) and isinstance(driving, PushDrive):
-            return (driving.way, one.guide) == wanted
+            return (driving.way, one.guide) == (name, stands)
         if not (isinstance(one, Hinge) and isinstance(driving, ShaftDrive)):
             return False
-        apart = known.place(one.place) - known.place(wanted.stands)
-        if driving.shaft == wanted.name:
-            return bool(np.abs(apart).max(initial=0.0) <= _SAME)
-        turned = known.rate(driving.shaft) - known.rate(wanted.name)
+        apart = known.place(one.place) - known.place(stands)
+        turned = known.rate(driving.shaft) - known.rate(name)
         return bool(np.abs([apart, turned]).max(initial=0.0) <= _SAME)
 
     fitting = [
-        (driving.name != wanted.name, member)
+        (driving.name != name, member)
         for member, (first, *others) in bonds.items()
         for driving in others
         if first.by == GROUND and bears(first, driving)

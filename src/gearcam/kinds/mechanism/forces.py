@@ -77,11 +77,11 @@ class JointForces:
         self.result = result
         demand_no_change_points(result, "forces in joints are")
         self.work = work_of(result.design, result.linkage, result.drives)
-        self.pressing = tuple(contacts_of(result.drives))
         self.structure = Structure.of(self.work.linkage)
         if not self.structure.members:
             what, near = "has no members, and so no joints", "the study of torque: gearcam torque"
             raise InfeasibleError(what, where="drive", nearest=near)
+        self.pressing = tuple(contacts_of(result.drives, self.work.linkage))
 
     @cached_property
     def labels(self) -> dict[Bond, str]:

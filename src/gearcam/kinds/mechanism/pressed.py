@@ -10,12 +10,13 @@ from __future__ import annotations
 
 import cmath
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from gearcam.kinds.mechanism.keys import center_of, way_of
-from gearcam.linkages.contacts import DriveContact, LineOfAction, Moving
+from gearcam.linkages.contacts import DriveContact, LineOfAction, Moving, carrier
+from gearcam.linkages.reactions import Structure
 from gearcam.mechanics.follower_loads import DrivenMotion
 from gearcam.results.nested import within
 
@@ -23,17 +24,23 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from gearcam.kinds.mechanism.placed import PlacedDrive
+    from gearcam.linkages.linkage import Linkage
     from gearcam.mechanics.supports import Push
     from gearcam.numeric.arrays import Array
 
+_PLACES: Final = 24
+"""Angles of the range at which two shafts are compared."""
 
-def contacts_of(drives: Sequence[PlacedDrive]) -> Iterator[DriveContact]:
+
+def contacts_of(drives: Sequence[PlacedDrive], linkage: Linkage) -> Iterator[DriveContact]:
     """Yield what the pairs and the cams of a mechanism press on, by the names of the drives.
 
     Parameters
     ----------
     drives : sequence of PlacedDrive
         The drives.
+    linkage : Linkage
+        What they move, with their own masses.
 
     Yields
     ------
@@ -44,6 +51,13 @@ def contacts_of(drives: Sequence[PlacedDrive]) -> Iterator[DriveContact]:
         cam's own design are not in it. Angles at which it is asked raise `InfeasibleError` if a
         wall of a cam in space is undercut, or its turret is not held at all of them.
     """
+    bonds, known = Structure.of(linkage).by_member, linkage.at(linkage.even_places(_PLACES), 1)
+
+    def moving(drive: PlacedDrive, word: str) -> Moving:
+        name = f"{drive.spec.name}.{word}"
+        stands = way_of(name) if drive.moved[word].along else center_of(name)
+        return Moving(name, stands, carrier(bonds, known, name, stands))
+
     for number, drive in enumerate(drives):
         if drive.result is None:
             continue
@@ -54,17 +68,11 @@ def contacts_of(drives: Sequence[PlacedDrive]) -> Iterator[DriveContact]:
             lines = partial(_of_pair, drive)
         yield DriveContact(
             name=drive.spec.name,
-            driven=_moving(drive, driven),
+            driven=moving(drive, driven),
             sense=-sense if drive.spec.mirror and not drive.moved[driven].along else sense,
             lines=lines,
-            driver=_moving(drive, driver[0]) if driver else None,
+            driver=moving(drive, driver[0]) if driver else None,
         )
-
-
-def _moving(drive: PlacedDrive, word: str) -> Moving:
-    """Return a shaft or a slide of a drive."""
-    name = f"{drive.spec.name}.{word}"
-    return Moving(name, way_of(name) if drive.moved[word].along else center_of(name))
 
 
 def _of_pair(drive: PlacedDrive, q: Array) -> tuple[LineOfAction, LineOfAction]:
