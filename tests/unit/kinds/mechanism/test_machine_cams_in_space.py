@@ -263,7 +263,8 @@ def test_a_follower_is_pulled_off_one_wall_only_to_its_side(
 def test_the_contact_force_is_shared_along_the_roller(walls: str) -> None:
     """A place at x approaches its wall by c = x/sqrt(x^2 + s'^2) of the lift, and carries as much.
 
-    So the force N has the effect N*integral(c^2)/integral(c) along the roller.
+    So the force N has the effect N*integral(c^2)/integral(c) along the line of contact, whose
+    points are 11*(s', x)/sqrt(x^2 + s'^2) beside and above the axis of the roller.
     """
     cam = {**DRUM, "cam": {**DRUM["cam"], "walls": walls}}
     result = machine(
@@ -278,7 +279,8 @@ def test_the_contact_force_is_shared_along_the_roller(walls: str) -> None:
         end = np.sqrt(100.0**2 - (11.0 * rate) ** 2 / (end**2 + rate**2))
     x = 82.0 + np.linspace(0.0, 1.0, 2001) * (end[:, None] - 82.0)
     c = x / np.hypot(x, rate[:, None])
-    effect = np.trapezoid(c**2, x, axis=1) / np.trapezoid(c, x, axis=1)
+    stretch = np.hypot(1.0, 11.0 * rate[:, None] / (x**2 + rate[:, None] ** 2))
+    effect = np.trapezoid(c**2 * stretch, x, axis=1) / np.trapezoid(c * stretch, x, axis=1)
     side = -1.0 if walls == "upper" else 1.0  # off which it is pulled
     assert study["d_contact_n"] == pytest.approx(side * 50.0 / effect, rel=1e-6)
 
