@@ -31,8 +31,9 @@ class JointedMachine(ShortRepr):
         Guides in which what slides tips, and where, in words.
     largest : mapping of str to (float, str)
         The largest force, N, of each joint and guide, and where it is, in words.
-    pulled : mapping of str to (float, str)
-        Cams off which their followers are pulled: the largest such force, N, and the ranges.
+    pulled : mapping of str to (float, str, bool)
+        Cams off which their followers are pulled: the largest such force, N, the ranges, and
+        whether another wall holds the follower.
     slack : mapping of str to str
         Chains that would have to push, and where, in words.
     """
@@ -42,7 +43,7 @@ class JointedMachine(ShortRepr):
     free: float
     tipping: dict[str, str]
     largest: dict[str, tuple[float, str]]
-    pulled: dict[str, tuple[float, str]]
+    pulled: dict[str, tuple[float, str, bool]]
     slack: dict[str, str]
 
 
@@ -75,14 +76,17 @@ def edge_contact(machine: JointedMachine, limit: float) -> Iterator[Remark]:  # 
 
 @check("contact-reverses", kind=CHECKS, severity="note", unit="N")
 def contact_reverses(machine: JointedMachine, limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Note where the machine pulls a follower off its cam.
+    """Note where the machine pulls a follower off its cam, or onto its other wall.
 
     Looks at: the normal force between each cam and its follower, without the springs and loads of
     the cam's own design.
     """
-    for name, (force, where) in machine.pulled.items():
+    for name, (force, where, held) in machine.pulled.items():
         what = "Here the machine pulls the follower off its cam, with up to this force along the "
-        what += "normal: the other wall of a groove carries, or a spring must hold it."
+        what += "normal: a spring must hold it."
+        if held:
+            what = "Here the other wall carries, with up to this force along the normal: the load "
+            what += "changes its side, across the clearance if there is any."
         yield Remark(what, f"{name}, {where}", force)
 
 

@@ -340,11 +340,16 @@ def _machine(joints: JointForces, q: Array, found: Reactions) -> JointedMachine:
         for bond, name in joints.labels.items()
         if isinstance(bond, ChainDrive) and (found.carried(bond)[:, 0] < 0.0).any()
     }
-    locked, pulled = found.locked, dict[str, tuple[float, str]]()
+    locked, pulled = found.locked, dict[str, tuple[float, str, bool]]()
+    held = {
+        one.spec.name
+        for one in joints.result.drives
+        if one.spec.cam is not None and len(one.result.touches) > 1
+    }
     for name, force in joints.contacts(found).items():
         off = force < -_NOISE * np.nanmax(np.abs(force), initial=0.0)
         if off.any():
-            pulled[name] = (float(-np.nanmin(force)), joints.ranges(q, off))
+            pulled[name] = (float(-np.nanmin(force)), joints.ranges(q, off), name in held)
     sizes = np.abs(found.moment)
     top = int(np.nanargmax(sizes)) if np.isfinite(sizes).any() else 0
     return JointedMachine(
