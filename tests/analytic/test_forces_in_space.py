@@ -188,20 +188,20 @@ def test_both_ends_of_a_guide_hold_the_follower(name: str, height: float) -> Non
         z = 30.0 + result.program.derivatives(x[k : k + 1], 0)[0][0] + height
         sense = np.sign(result.program.derivatives(x[k : k + 1], 1)[1][0])
         ends = [np.array([75.0, 0.0, z + half]) for half in (30.0, -30.0)]
-        normal, load, drag = 200.0, statics.against[k], 0.0
+        columns = [np.concatenate([force, moment])]
+        columns += [
+            np.concatenate([unit, np.cross(end, unit)])
+            for end in ends
+            for unit in (np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]))
+        ]
+        columns.append(np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.0]))
+        found = np.zeros(6)
         for _ in range(200):  # the drag of the guide depends on the reactions
-            columns = [np.concatenate([force, moment])]
-            columns += [
-                np.concatenate([unit, np.cross(end, unit)])
-                for end in ends
-                for unit in (np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]))
-            ]
-            columns.append(np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.0]))
-            along = np.array([0.0, 0.0, -load - drag])
+            drag = 0.1 * sense * (np.hypot(*found[1:3]) + np.hypot(*found[3:5]))
+            along = np.array([0.0, 0.0, -statics.against[k] - drag])
             known = np.concatenate([along, np.cross([75.0, 0.0, z], along)])
             found = np.linalg.solve(np.stack(columns, axis=1), -known)
-            normal, high, low = found[0], found[1:3], found[3:5]
-            drag = 0.1 * sense * (np.hypot(*high) + np.hypot(*low))
+        normal, high, low = found[0], found[1:3], found[3:5]
         assert normal == pytest.approx(statics.force[k], rel=1e-5)
         assert np.hypot(*high) == pytest.approx(statics.reactions["guide_high_n"][k], rel=1e-5)
         assert np.hypot(*low) == pytest.approx(statics.reactions["guide_low_n"][k], rel=1e-5)
