@@ -102,6 +102,7 @@ def _milled(made: dict[str, Any], index: int, radius: float) -> None:
         made["tool"] = {"feed_mm_min": 100 + index, "spindle_rpm": 6000, "depth_mm": short(radius)}
         if index % 2:
             made["tool"] |= {"diameter_mm": short(1.6 * radius), "clearance_height_mm": 3}
+            made["tool"]["rotary"] = "wrapped"
         if index % 3 == 0 and follower.get("cone_deg") != "apex":
             made["tool"]["cone_deg"] = follower.get("cone_deg", 0)
 
