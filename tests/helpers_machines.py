@@ -16,6 +16,36 @@ PAIR = {
 LEVER = str(PROFILES / "plate_cam_oscillating.toml")
 TAPPET = str(PROFILES / "plate_cam_offset_roller.toml")
 
+DRUM: dict[str, Any] = {
+    "kind": "cam", "name": "drum",
+    "motion": [
+        {"type": "rise", "law": "modified-sine", "angle_deg": 150, "lift_mm": 60},
+        {"type": "dwell", "angle_deg": 40},
+        {"type": "return", "law": "cycloidal", "angle_deg": 140},
+        {"type": "dwell", "angle_deg": "rest"},
+    ],
+    "follower": {"roller_radius_mm": 11},
+    "cam": {"form": "cylinder", "outer_diameter_mm": 200, "length_mm": 110, "lowest_mm": 25,
+            "groove_depth_mm": 18},
+}  # fmt: skip
+"""A cylinder cam; `SWING` has an arm."""
+
+SWING: dict[str, Any] = {
+    **DRUM,
+    "motion": [{"type": "rise", "law": "modified-sine", "angle_deg": 150, "lift_deg": 20},
+               *DRUM["motion"][1:]],
+    "follower": {"roller_radius_mm": 11, "motion": "oscillating", "arm_mm": 160, "start_deg": -7,
+                 "pivot_distance_mm": 158.5},
+    "cam": {**DRUM["cam"], "length_mm": 130, "lowest_mm": 35},
+}  # fmt: skip
+
+FRAMES: dict[str, dict[str, Any]] = {
+    "as it is": {},
+    "turned": {"at_mm": [30, -40], "turn_deg": 35},
+    "mirrored": {"at_mm": [5, 10], "turn_deg": -120, "mirror": True},
+}
+"""Where drives stand."""
+
 MACHINES: dict[str, dict[str, Any]] = {
     "four-bar": {
         "drive": [MOTOR],

@@ -24,14 +24,8 @@ from gearcam.mechanics.friction import WheelFrictionSpec
 from gearcam.meshing.forces import tooth_forces
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.roots import bracketed_root
-from helpers_machines import LEVER, TAPPET
+from helpers_machines import DRUM, FRAMES, LEVER, SWING, TAPPET
 from helpers_pairs import PROFILES
-
-FRAMES: dict[str, dict[str, Any]] = {
-    "as it is": {},
-    "turned": {"at_mm": [30, -40], "turn_deg": 35},
-    "mirrored": {"at_mm": [5, 10], "turn_deg": -120, "mirror": True},
-}
 
 
 def joints(drive: dict[str, Any], **tables: Any) -> JointForces:
@@ -145,27 +139,6 @@ def test_bearings_of_a_pair_carry_its_teeth(name: str, frame: str) -> None:
 
 GROOVE = gc.load(PROFILES / "groove_cam.toml").to_dict()
 CONJUGATE = gc.load(PROFILES / "conjugate_cams.toml").to_dict()
-DRUM: dict[str, Any] = {
-    "kind": "cam", "name": "drum",
-    "motion": [
-        {"type": "rise", "law": "modified-sine", "angle_deg": 150, "lift_mm": 60},
-        {"type": "dwell", "angle_deg": 40},
-        {"type": "return", "law": "cycloidal", "angle_deg": 140},
-        {"type": "dwell", "angle_deg": "rest"},
-    ],
-    "follower": {"roller_radius_mm": 11},
-    "cam": {"form": "cylinder", "outer_diameter_mm": 200, "length_mm": 110, "lowest_mm": 25,
-            "groove_depth_mm": 18},
-}  # fmt: skip
-SWING: dict[str, Any] = {
-    **DRUM,
-    "motion": [{"type": "rise", "law": "modified-sine", "angle_deg": 150, "lift_deg": 20},
-               *DRUM["motion"][1:]],
-    "follower": {"roller_radius_mm": 11, "motion": "oscillating", "arm_mm": 160, "start_deg": -7,
-                 "pivot_distance_mm": 158.5},
-    "cam": {**DRUM["cam"], "length_mm": 130, "lowest_mm": 35},
-}  # fmt: skip
-
 CAMS: dict[str, tuple[dict[str, Any], tuple[float, ...]]] = {
     "tappet": (gc.load(TAPPET).to_dict(), (1.0,)),
     "flat": (gc.load(PROFILES / "flat_follower.toml").to_dict(), (1.0,)),

@@ -201,7 +201,6 @@ def _facts(
         "largest": {
             name: _largest(loaded, values, BEARINGS[name])
             for name, values in _bearings(loaded).items()
-            if name in BEARINGS
         },
         "locked": _locked(statics),
         "lifted": bool(statics.lifted.any()),
@@ -246,8 +245,9 @@ def _locked(statics: Statics) -> Fact | bool:
 
 
 def _bearings(loaded: Loaded) -> dict[str, Array]:
-    """Return the forces of bearings and guides by columns."""
-    return {"bearing_n": np.abs(loaded.statics.bearing), **loaded.statics.reactions}
+    """Return what bearings and guides exert that is shown, by columns."""
+    found = {"bearing_n": np.abs(loaded.statics.bearing), **loaded.statics.reactions}
+    return {name: values for name, values in found.items() if name in BEARINGS}
 
 
 def _largest(loaded: Loaded, values: Array, label: str) -> Fact | None:
@@ -356,37 +356,28 @@ def _charts(
         "pressure_mpa": limit_of(FORCES, "contact-pressure", given),
         "torque_nm": limit_of(FORCES, "drive-torque", given) / TORQUE.factor,
     }
+
+    def lines(name: str, label: str) -> tuple[Line, ...]:
+        x, y = np.asarray(columns[column]), np.ma.filled(columns[name], np.nan)
+        return tuple(
+            Line(label=label + way, x=x[rows], y=y[rows]) for way, rows in on_each_way(loaded)
+        )
+
     charts = {}
     for name, (title, axis) in TITLES.items():
-        values = np.ma.filled(columns[name], np.nan) if name in columns else None
-        if values is None or not np.isfinite(values).any():
+        if name not in columns or not np.isfinite(np.ma.filled(columns[name], np.nan)).any():
             continue
         most = limits.get(name)
         charts[name.partition("_")[0]] = chart(
             title=title,
             y=axis,
-            lines=tuple(
-                Line(
-                    label=axis.partition(",")[0] + way,
-                    x=np.asarray(columns[column])[rows],
-                    y=values[rows],
-                )
-                for way, rows in on_each_way(loaded)
-            ),
+            lines=lines(name, axis.partition(",")[0]),
             limits=(Limit(label="limit", value=most),) if most else (),
         )
+    forces = [name for name in _bearings(loaded) if name.endswith("_n")]
     charts["bearings"] = chart(
         title="Forces of bearings and guides",
         y="force, N",
-        lines=tuple(
-            Line(
-                label=BEARINGS[name] + way,
-                x=np.asarray(columns[column])[rows],
-                y=np.ma.filled(columns[name], np.nan)[rows],
-            )
-            for name in _bearings(loaded)
-            if name in BEARINGS and name.endswith("_n")
-            for way, rows in on_each_way(loaded)
-        ),
+        lines=tuple(line for name in forces for line in lines(name, BEARINGS[name])),
     )
     return charts | more.charts(loaded, columns)

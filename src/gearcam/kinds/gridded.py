@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from gearcam.base.adjustments import Changes
     from gearcam.mechanics.driver_axis import DriverAxis
     from gearcam.spatial.loaded import RollerTouch
-    from gearcam.spatial.walls import RollerWall
 
 
 _STEEP: Final = "pressure-angle"
@@ -74,6 +73,8 @@ class GriddedCam(LoadedCam, Result):
     """Largest number of cam angles at which rollers cut a solid: a few seconds."""
     most_facets: ClassVar[int]
     """Largest number of triangles that a solid is made from: ten seconds, and a gigabyte."""
+    roller_key: ClassVar[str]
+    """Key of the radius of the roller."""
 
     @cached_property
     def touches(self) -> tuple[RollerTouch, ...]:
@@ -84,8 +85,7 @@ class GriddedCam(LoadedCam, Result):
         InfeasibleError
             If a wall is undercut.
         """
-        for wall in self.cam.walls:
-            self.demand_whole(wall)
+        self.demand_whole()
         slip = self.design.friction.flank
         return tuple(replace(one, slip=slip) for one in self.cam.touches)
 
@@ -103,34 +103,27 @@ class GriddedCam(LoadedCam, Result):
 
         return Rotating().driver
 
-    roller_key: ClassVar[str]
-    """Key of the radius of the roller."""
-
-    def demand_whole(self, wall: RollerWall) -> None:
-        """Refuse a wall that the roller cuts away at another angle.
-
-        Parameters
-        ----------
-        wall : RollerWall
-            A wall of the cam.
+    def demand_whole(self) -> None:
+        """Refuse walls that the roller cuts away at another angle.
 
         Raises
         ------
         InfeasibleError
-            If it is undercut.
+            If one is undercut.
         """
-        if not wall.undercut:
-            return
-        most = wall.allowed_radius
-        at = formatted(math.degrees(wall.spread.theta), 5)
-        raise beyond_limit(
-            f"the {wall.key} wall is undercut at {at} deg, and has no whole surface",
-            self.roller_key,
-            wall.cam.roller.radius,
-            most,
-            "the limit is the largest roller without undercut",
-            near=most,
-        )
+        for wall in self.cam.walls:
+            if not wall.undercut:
+                continue
+            most = wall.allowed_radius
+            at = formatted(math.degrees(wall.spread.theta), 5)
+            raise beyond_limit(
+                f"the {wall.key} wall is undercut at {at} deg, and has no whole surface",
+                self.roller_key,
+                wall.cam.roller.radius,
+                most,
+                "the limit is the largest roller without undercut",
+                near=most,
+            )
 
     @cached_property
     @abstractmethod

@@ -3,31 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
-from functools import partial
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from gearcam.kinds.gridded import STEM
+from gearcam.kinds.over_driver import over_driver
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.pose import Pose
-from gearcam.pictures.charts import Chart, Limit, Line, knot_marks
+from gearcam.pictures.charts import Chart, Limit, Line
 from gearcam.pictures.drawings import Feature
 from gearcam.pictures.scenes import MovingBody, Scene
 
 if TYPE_CHECKING:
     from gearcam.kinds.gridded import GriddedCam
     from gearcam.numeric.arrays import Array, Plane
-
-DRIVER: Final = "cam angle theta, deg"
-"""Label of the axis of cam angles."""
-
-
-def _over_turn(result: GriddedCam) -> Callable[..., Chart]:
-    """Return what makes charts over the cam angle, with marks at knots of the motion."""
-    knots = knot_marks(np.degrees(np.asarray(result.program.knots)), 0.0, 360.0)
-    return partial(Chart, x=DRIVER, marks=knots)
 
 
 def motion_chart(result: GriddedCam, name: str, title: str, called: str = "") -> Chart:
@@ -47,7 +38,7 @@ def motion_chart(result: GriddedCam, name: str, title: str, called: str = "") ->
     table = result.motion()
     column = next(one for one in table if one.startswith(name))
     unit = column.removeprefix(f"{name}_").replace("_per_", "/")
-    return _over_turn(result)(
+    return over_driver(result)(
         title=title,
         y=f"{called or name}, {unit}",
         lines=(Line(label=name, x=table["theta_deg"], y=table[column]),),
@@ -71,7 +62,7 @@ def pressure_chart(
         The largest that is allowed.
     """
     table = result.motion()
-    return _over_turn(result)(
+    return over_driver(result)(
         title=title,
         y="pressure angle, deg",
         lines=tuple(
@@ -100,7 +91,7 @@ def spread_chart(result: GriddedCam, title: str, places: Mapping[str, float]) ->
         for label, x in places.items():
             spread = wall.contact(theta, np.full((len(theta), 1), x)).spread[:, 0]
             lines.append(Line(label=f"{wall.key} wall, {label}", x=np.degrees(theta), y=spread))
-    return _over_turn(result)(
+    return over_driver(result)(
         title=title,
         y="spread, mm",
         lines=tuple(lines),
@@ -156,7 +147,7 @@ def unrolled_scene(
     cam = MovingBody(name=STEM, called="cam, unrolled", features=tuple(sheet), pose=still)
     return Scene(
         title=result.design.name,
-        driver=DRIVER,
+        driver=result.driver.label,
         places=np.degrees(theta),
         closed=True,
         start=math.degrees(result.design.output.pose % (2.0 * math.pi)),

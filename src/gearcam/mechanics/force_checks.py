@@ -123,17 +123,16 @@ def lift_off(loaded: Loaded, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     the speed of the drive and at the lowest speeds.
     """
     lifted = loaded.statics.lifted
+    upwards = "loads below 0, which press it upwards" if loaded.above else ""
     if lifted.any():
         slow = ", at the lowest speeds too" if loaded.loose else ""
-        needs = "a stiffer spring or more preload"
-        if loaded.above:
-            needs = "loads below 0, which press it upwards"
+        needs = upwards or "a stiffer spring or more preload"
         message = f"The follower lifts off the cam{slow}: it needs {needs}"
         message += f"; it stays on it up to {loaded.release}." if loaded.release else "."
         message += f" With {loaded.holding} it stays on the cam." if loaded.holding else ""
         yield Remark(message, loaded.stretch(lifted))
     elif loaded.loose:
-        needs = "loads below 0, which press it upwards" if loaded.above else "more preload"
+        needs = upwards or "more preload"
         message = f"The follower lifts off the cam at the lowest speeds: it needs {needs}."
         yield Remark(message, loaded.loose)
 

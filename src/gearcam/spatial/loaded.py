@@ -191,36 +191,39 @@ class RollerTouch(Touch):
     above: bool
     slip: float = 0.0
 
-    edges: ClassVar[Array] = np.zeros(0)  # pyright: ignore[reportIncompatibleMethodOverride]
-    """It rides on no edge."""
-
     @property
     def radius(self) -> float:
         """Radius of the roller in the middle (see `Touch.radius`)."""
         return self.roller.radius_at(self.middle)
 
-    def _shares(self, line: ContactLine, support: Support, turn: Array) -> tuple[Array, Array]:
+    @property
+    def edges(self) -> Array:
+        """It rides on no edge (see `Touch.edges`)."""
+        return np.zeros(0)
+
+    def _shares(
+        self, line: ContactLine, support: Support, points: Array, normals: Array
+    ) -> tuple[Array, Array]:
         """Return how the roller approaches the wall by the lift, and the line load, 1/mm, (n, k).
 
-        The line load is that of a normal force of 1.
+        The line load is that of a normal force of 1; `points` and `normals` are in the fixed frame.
         """
-        points, normals = (
-            self.guide.in_plane(_turned(line.of(one), turn))
-            for one in (line.contact.points, line.contact.normals)
-        )
-        near = np.where(line.weights > 0.0, support.lifting(-normals, points), 0.0)
+        in_plane = self.guide.in_plane
+        near = support.lifting(in_plane(-normals), in_plane(points))
+        near = np.where(line.weights > 0.0, near, 0.0)
         whole = (line.weights * near).sum(axis=1, keepdims=True)
         return near, near / whole
 
     def push(self, motion: DrivenMotion, support: Support, share: float) -> tuple[Push, Array]:
         """Return the force of the wall, and what its friction takes (see `Touch.push`)."""
-        turn, line = motion.x, self.line(motion.x)
-        near, density = self._shares(line, support, turn)
-        part, contact = line.weights * density, line.contact
+        line = self.line(motion.x)
+        contact = line.contact
         points, normals, tangents, generators = (
-            _turned(line.of(one), turn)
+            _turned(line.of(one), motion.x)
             for one in (contact.points, contact.normals, contact.tangents, contact.generators)
         )
+        near, density = self._shares(line, support, points, normals)
+        part = line.weights * density
         moved = np.stack([-points[..., 1], points[..., 0], np.zeros(part.shape)], axis=-1)
         plane, ways = self.guide.in_plane(points), (tangents, generators)
         lifting = [support.lifting(self.guide.in_plane(one), plane) for one in ways]
@@ -278,10 +281,10 @@ class RollerTouch(Touch):
             The line load is 0 where a place is not on the cam.
         """
         line = self.line(x)
-        _, density = self._shares(line, self._support, x)
-        found = (line.of(one) for one in (line.contact.x, line.contact.curvature(self.roller)))
-        place, curvature = found
-        return place, density, curvature
+        contact = line.contact
+        points, normals = (_turned(line.of(one), x) for one in (contact.points, contact.normals))
+        _, density = self._shares(line, self._support, points, normals)
+        return line.of(contact.x), density, line.of(contact.curvature(self.roller))
 
     def rollers(self, x: Array) -> Ints:
         """Return how many rollers press at cam angles (n,), rad."""

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from gearcam.laws.displacement import Displacement
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Moved(ShortRepr):
     """One thing that a drive moves, in the drive's frame.
 

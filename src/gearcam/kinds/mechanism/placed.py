@@ -81,7 +81,7 @@ def _formula_cells(text: str, low: float, high: float) -> Array:
     return function.demand_smooth(_NAMES)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PlacedDrive(ShortRepr):
     """A drive in the machine.
 

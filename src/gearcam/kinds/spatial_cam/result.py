@@ -237,8 +237,7 @@ class SpatialCamResult(GriddedCam):
         """
         from gearcam.parts.cam_bands import cam_bands
 
-        for wall in self.cam.walls:
-            self.demand_whole(wall)
+        self.demand_whole()
         coarse, fine = (self.mesh_of(*size).volume for size in _WITNESSES)
         error = (fine - coarse) / 3.0
         with self.stage("bands"):
@@ -256,8 +255,7 @@ class SpatialCamResult(GriddedCam):
         from gearcam.spatial.milling import rotary_path
 
         cam, design = self.cam, self.design
-        for wall in cam.walls:
-            self.demand_whole(wall)
+        self.demand_whole()
         with self.stage("tool path"):
             return rotary_path(cam, design.tool, design.output.path_tolerance)
 

@@ -14,37 +14,10 @@ from gearcam.base.errors import InfeasibleError
 from gearcam.kinds.mechanism.drawn import scene
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.parts.shapes import Circle
+from helpers_machines import DRUM, FRAMES, SWING
 from helpers_pairs import PROFILES
 
-DRUM: dict[str, Any] = {
-    "kind": "cam", "name": "drum",
-    "motion": [
-        {"type": "rise", "law": "modified-sine", "angle_deg": 150, "lift_mm": 60},
-        {"type": "dwell", "angle_deg": 40},
-        {"type": "return", "law": "cycloidal", "angle_deg": 140},
-        {"type": "dwell", "angle_deg": "rest"},
-    ],
-    "follower": {"roller_radius_mm": 11},
-    "cam": {"form": "cylinder", "outer_diameter_mm": 200, "length_mm": 110, "lowest_mm": 25,
-            "groove_depth_mm": 18},
-}  # fmt: skip
-
-SWING: dict[str, Any] = {
-    **DRUM,
-    "motion": [{"type": "rise", "law": "modified-sine", "angle_deg": 150, "lift_deg": 20},
-               *DRUM["motion"][1:]],
-    "follower": {"roller_radius_mm": 11, "motion": "oscillating", "arm_mm": 160, "start_deg": -7,
-                 "pivot_distance_mm": 158.5},
-    "cam": {**DRUM["cam"], "length_mm": 130, "lowest_mm": 35},
-}  # fmt: skip
-
 INDEXER: dict[str, Any] = gc.load(PROFILES / "globoidal_indexer.toml").to_dict()
-
-FRAMES: tuple[dict[str, Any], ...] = (
-    {},
-    {"at_mm": [30, -40], "turn_deg": 35},
-    {"at_mm": [5, 10], "turn_deg": -120, "mirror": True},
-)
 
 
 def turning(cam: dict[str, Any], rotation: str) -> dict[str, Any]:
@@ -83,7 +56,7 @@ def place(result: Any, joint: str, q: Array) -> Plane:
 THETA = np.radians([0.0, 20.0, 75.0, 149.0, 170.0, 250.0, 340.0, 400.0])
 
 
-@pytest.mark.parametrize("frame", FRAMES)
+@pytest.mark.parametrize("frame", FRAMES.values(), ids=FRAMES)
 @pytest.mark.parametrize("rotation", ["ccw", "cw"])
 def test_a_slide_is_where_the_roller_of_its_cylinder_cam_is(
     frame: dict[str, Any], rotation: str
@@ -98,7 +71,7 @@ def test_a_slide_is_where_the_roller_of_its_cylinder_cam_is(
     assert found["s_mm_per_rad3"] == pytest.approx(lift["jerk_mm_per_rad3"], abs=1e-9)
 
 
-@pytest.mark.parametrize("frame", FRAMES)
+@pytest.mark.parametrize("frame", FRAMES.values(), ids=FRAMES)
 @pytest.mark.parametrize("rotation", ["ccw", "cw"])
 def test_an_arm_carries_the_roller_of_its_cylinder_cam(
     frame: dict[str, Any], rotation: str
@@ -109,7 +82,7 @@ def test_an_arm_carries_the_roller_of_its_cylinder_cam(
     assert place(result, "T", THETA) == pytest.approx(placed(roller(cam, THETA), frame), abs=1e-10)
 
 
-@pytest.mark.parametrize("frame", FRAMES)
+@pytest.mark.parametrize("frame", FRAMES.values(), ids=FRAMES)
 @pytest.mark.parametrize("rotation", ["ccw", "cw"])
 def test_a_crank_on_a_turret_stays_on_its_roller(frame: dict[str, Any], rotation: str) -> None:
     """The roller in front begins half a pitch below the middle, and rises while the cam turns."""
@@ -197,7 +170,7 @@ def test_the_turret_exerts_what_its_inertia_asks_for() -> None:
     assert study["torque_nm"] == pytest.approx(0.02 * bend * rate, abs=1e-9)
 
 
-@pytest.mark.parametrize("frame", FRAMES)
+@pytest.mark.parametrize("frame", FRAMES.values(), ids=FRAMES)
 def test_an_arm_exerts_its_torque_in_its_lift(frame: dict[str, Any]) -> None:
     """By the work of the driver: the torque times the rate of the lift."""
     arm = {"name": "a", "on": "d.follower", "joint": "T", "length_mm": 160, "arm_angle_deg": 0}
@@ -367,7 +340,7 @@ def _rollers(body: Any) -> Plane:
     return np.array([one.shape.center for one in body.features if isinstance(one.shape, Circle)])
 
 
-@pytest.mark.parametrize("frame", FRAMES)
+@pytest.mark.parametrize("frame", FRAMES.values(), ids=FRAMES)
 @pytest.mark.parametrize("rotation", ["ccw", "cw"])
 def test_the_picture_has_the_roller_where_the_arm_carries_it(
     frame: dict[str, Any], rotation: str
