@@ -67,7 +67,7 @@ class Expansion(ShortRepr):
         """Return the values at `x`; beyond the ends the end intervals are extrapolated."""
         x = np.asarray(x, dtype=float)
         index = self.knots[1:-1].searchsorted(x, side="right")
-        center, scale, powers = self._powers
+        center, scale, powers = self.powers
         t = (x - center.take(index, mode="clip")) * scale.take(index, mode="clip")
         columns = powers.take(index, 1, mode="clip")
         value = columns[-1]
@@ -77,7 +77,7 @@ class Expansion(ShortRepr):
         return value
 
     @cached_property
-    def _powers(self) -> tuple[Array, Array, Array]:
+    def powers(self) -> tuple[Array, Array, Array]:
         """Middles and inverse half widths of the intervals, and power coefficients.
 
         At this degree, and with coefficients that decrease to rounding, powers are as accurate and
