@@ -2,9 +2,9 @@
 
 A *mode* is a form of the equations of motion that holds while some functions of the state are not
 negative: teeth in contact, in play, a follower in flight. Where one of these functions becomes
-negative the motion *switches* to another mode. Integration starts anew at each knot and each switch,
-so that no step crosses one; a step that ends beyond a switch is cut there, by a root of its dense
-output. The switch happens a hair beyond the limit, so that the next mode begins within its own.
+negative the motion *switches* to another mode. Integration starts anew at each knot and each
+switch, so that no step crosses one; a step that ends beyond a switch is cut there, by a root of its
+dense output. The switch happens a hair beyond the limit, so that the next mode begins within its own.
 
 The steps are those of scipy's integrators.
 """
@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -48,11 +49,14 @@ class Switch(NamedTuple):
         Name of the mode that follows.
     hair : float
         How far below 0 it falls before the switch: rounding of the function.
+    dips : bool
+        Whether it may fall below 0 and come back within a step.
     """
 
     holds: Callable[[float, Any], float]
     to: str
     hair: float
+    dips: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,7 +202,7 @@ class Integrator(ShortRepr):
         mode, state = start
         y = np.asarray(state, dtype=float)
         run = _Run(self, modes, keep)
-        for low, high in zip(knots[:-1], knots[1:], strict=True):
+        for low, high in pairwise(knots):
             mode, y = run.stretch(mode, y, float(low), float(high))
             passed(float(high))
         return Motion(
@@ -241,7 +245,9 @@ class _Run:
         """Integrate in one mode; return place, state and mode at its end or at the knot."""
         mode, given = self._modes[name], self._integrator
         width = None if self._width is None else min(self._width, end - x)
-        solver = self._made(mode.rate, x, y, end, rtol=given.rtol, atol=given.atol, first_step=width)
+        solver = self._made(
+            mode.rate, x, y, end, rtol=given.rtol, atol=given.atol, first_step=width
+        )
         try:
             while solver.status == "running":
                 solver.step()
@@ -260,11 +266,14 @@ class _Run:
     def _kept(self, solver: Any, name: str, mode: Mode) -> tuple[float, Array, str] | None:
         """Keep the last step; return where it switches, the state there and the next mode."""
         low, high = float(solver.t_old), float(solver.t)
-        if not mode.switches and high < self._keep:
+        watched = [
+            one for one in mode.switches if one.dips or one.holds(high, solver.y) < -one.hair
+        ]
+        if not watched and high < self._keep:
             return None
         at = solver.dense_output()
         first: tuple[float, Switch] | None = None
-        for switch in mode.switches:
+        for switch in watched:
             place = _crossing(switch, at, low, high)
             if place is not None and (first is None or place < first[0]):
                 first = place, switch
@@ -273,7 +282,9 @@ class _Run:
         return None if first is None else (first[0], at(first[0]), first[1].to)
 
 
-def _crossing(switch: Switch, at: Callable[[float], Array], low: float, high: float) -> float | None:
+def _crossing(
+    switch: Switch, at: Callable[[float], Array], low: float, high: float
+) -> float | None:
     """Return the first place in a step at which a mode ceases to hold, or None."""
 
     def left(x: float) -> float:
@@ -294,6 +305,12 @@ def _root(function: Callable[[float], float], low: float, high: float) -> float:
 
     if function(low) <= 0.0:  # it begins to fall at once
         return high
-    found, _ = brentq(function, low, high, xtol=4e-16 * max(abs(low), abs(high), 1e-300),
-                      rtol=8.9e-16, full_output=True)
+    found, _ = brentq(
+        function,
+        low,
+        high,
+        xtol=4e-16 * max(abs(low), abs(high), 1e-300),
+        rtol=8.9e-16,
+        full_output=True,
+    )
     return float(found)

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from gearcam.base.display import ShortRepr
 from gearcam.numeric.arrays import Array
-from gearcam.numeric.chebyshev import Expansion, expand
+from gearcam.numeric.chebyshev import expand_all
 
 
 class Tabled(ShortRepr):
@@ -52,20 +52,16 @@ class Tabled(ShortRepr):
         knots = np.asarray(knots, dtype=float)
         self.low, self.closed = float(knots[0]), closed
         self.period = float(knots[-1]) - self.low
-        count = len(functions(knots[:1]))
-        edges = knots
-        for number in range(count):  # each may need finer cells than those before
-            def one(x: Array, number: int = number) -> Array:
-                return functions(x)[number]
+        self._columns = expand_all(functions, knots, tolerance, cuts=cuts)
 
-            edges = expand(one, edges, tolerance, cuts=cuts).knots
-        self._columns = [
-            expand(lambda x, k=k: functions(x)[k], edges, np.inf, cuts=1) for k in range(count)
-        ]
+    @property
+    def edges(self) -> Array:
+        """Ends of its cells, in which few points tell all."""
+        return self._columns[0].knots
 
     @cached_property
     def _cells(self) -> tuple[list[float], list[tuple[float, float, list[tuple[float, ...]]]]]:
-        """Inner edges, and of each cell its middle, inverse half width, and powers, highest first."""
+        """Inner edges, and of each cell its middle, inverse half width, powers, highest first."""
         parts = [column.powers for column in self._columns]
         middles, scales, _ = parts[0]
         powers = np.array([one[2][::-1] for one in parts])
@@ -86,7 +82,9 @@ class Tabled(ShortRepr):
         t = (x - middle) * scale
         found = []
         for a, b, c, d, e, f, g, h, i in powers:
-            found.append((((((((a * t + b) * t + c) * t + d) * t + e) * t + f) * t + g) * t + h) * t + i)
+            found.append(
+                (((((((a * t + b) * t + c) * t + d) * t + e) * t + f) * t + g) * t + h) * t + i
+            )
         return found
 
     def at(self, x: ArrayLike) -> Array:
