@@ -4,7 +4,8 @@ A *mode* is a form of the equations of motion that holds while some functions of
 negative: teeth in contact, in play, a follower in flight. Where one of these functions becomes
 negative the motion *switches* to another mode. Integration starts anew at each knot and each
 switch, so that no step crosses one; a step that ends beyond a switch is cut there, by a root of its
-dense output. The switch happens a hair beyond the limit, so that the next mode begins within its own.
+dense output. The switch happens a hair beyond the limit, so that the next mode begins within its
+own.
 
 The steps are those of scipy's integrators.
 """
@@ -69,10 +70,13 @@ class Mode(ShortRepr):
         ``rate(x, y)`` returns the derivatives of the state, as a list of floats.
     switches : tuple of Switch
         Its ends.
+    last : bool
+        Whether the motion ends where it begins.
     """
 
     rate: Rate
     switches: tuple[Switch, ...] = ()
+    last: bool = False
 
 
 class Piece(NamedTuple):
@@ -204,6 +208,8 @@ class Integrator(ShortRepr):
         run = _Run(self, modes, keep)
         for low, high in pairwise(knots):
             mode, y = run.stretch(mode, y, float(low), float(high))
+            if modes[mode].last:
+                break
             passed(float(high))
         return Motion(
             end=y,
@@ -231,7 +237,7 @@ class _Run:
     def stretch(self, mode: str, y: Array, low: float, high: float) -> tuple[str, Array]:
         """Return mode and state at the end of a stretch between knots."""
         x = low
-        while x < high:
+        while x < high and not self._modes[mode].last:
             x, y, after = self._until_switch(mode, y, x, high)
             if after != mode:
                 self.switches.append((x, mode, after))

@@ -141,18 +141,21 @@ class TableMotor(Motor):
         return [*self.speeds[1:-1]], [tuple(one) for one in powers.T.tolist()], powers
 
     def torque(self, phi: Any, omega: Any) -> Any:  # noqa: ARG002
-        """Return its torque; beyond its speeds the curve goes on."""
+        """Return its torque; beyond its speeds it goes on along the last chord."""
         inner, cells, powers = self._cells
         if isinstance(omega, np.ndarray):
-            cell = np.searchsorted(inner, omega, side="right")
+            within = np.minimum(omega, self.highest)
+            cell = np.searchsorted(inner, within, side="right")
             a, b, c, d = powers[:, cell]
             low = np.asarray(self.speeds)[cell]
         else:
-            number = bisect_right(inner, omega)
+            within = min(omega, self.highest)
+            number = bisect_right(inner, within)
             a, b, c, d = cells[number]
             low = self.speeds[number]
-        t = omega - low
-        return ((a * t + b) * t + c) * t + d
+        t = within - low
+        chord = (self.sizes[-1] - self.sizes[-2]) / (self.speeds[-1] - self.speeds[-2])
+        return ((a * t + b) * t + c) * t + d + chord * (omega - within)
 
 
 def motor_of(spec: MotorSpec) -> Motor | None:

@@ -31,6 +31,12 @@ MOVES, STANDS = "moves", "stands"
 _REST: Final = 1e-12
 """Kinetic energy, over that at a usual speed, below which the driver stands still."""
 
+_STEEP: Final = 5e3
+"""Fall of a disturbance in a turn, as an exponent, from which explicit steps cost more."""
+
+_PROBES: Final = 65
+"""Places at which it is looked for."""
+
 _BEGUN: Final = 1e-9
 """The same, up to which a motion from rest follows its series."""
 
@@ -58,6 +64,12 @@ class RigidMotion(ShortRepr):
     knots: Array
     motion: Motion | None = None
     even: float = 0.0
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """First and last angle, rad: where it stopped, if it did."""
+        last = self.knots[-1] if self.stopped is None else self.stopped
+        return float(self.knots[0]), float(last)
 
     def rows(self, phi: Array) -> Array:
         """Return the rows of the machine at angles, (m, n)."""
@@ -103,11 +115,12 @@ class RigidMotion(ShortRepr):
     def _cells(self) -> Array:
         """Angles between which a few points tell all, rad."""
         steps = [one.low for one in self.motion.pieces] if self.motion else []
-        low, high = self.knots[[0, -1]]
+        low, high = self.ends
         turns = np.arange(math.ceil((high - low) / self.machine.period))
         edges = np.add.outer(self.machine.period * turns, self.machine.rows.edges).ravel()
         inside = edges[(edges > low) & (edges < high)]
-        return np.unique(np.concatenate([self.knots, steps, inside]))
+        knots = self.knots[(self.knots > low) & (self.knots < high)]
+        return np.unique(np.concatenate([[low], knots, steps, inside, [high]]))
 
     @cached_property
     def speeds(self) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -131,7 +144,7 @@ class RigidMotion(ShortRepr):
     @property
     def lasts(self) -> float:
         """Time from the first to the last angle, s."""
-        return float(self.time(self.knots[-1:])[0] - self.time(self.knots[:1])[0])
+        return float(np.diff(self.time(np.array(self.ends)))[0])
 
     @cached_property
     def works(self) -> tuple[float, float, float]:
@@ -143,7 +156,7 @@ class RigidMotion(ShortRepr):
     @cached_property
     def gained(self) -> float:
         """By how much the kinetic energy is larger at the end, J."""
-        ends = self.knots[[0, -1]]
+        ends = np.array(self.ends)
         if self.motion is not None:
             return float(np.diff(self.motion.at(ends)[0])[0])
         inertia = self.machine.inertia(self.rows(ends))
@@ -194,6 +207,16 @@ class RigidRun(ShortRepr):
         """Energy at a usual speed."""
         return self.energy(float(self.machine.knots[0]), self.scale)
 
+    @cached_property
+    def method(self) -> str:
+        """The integrator: an implicit one if the motor's torque is very steep in the speed."""
+        phi = np.linspace(*self.machine.knots[[0, -1]], _PROBES)
+        row = self.machine.rows.at(phi)
+        less, more = (np.full(phi.shape, share * self.scale) for share in (0.98, 1.02))
+        steep = np.abs(self.motor.torque(phi, more) - self.motor.torque(phi, less))
+        rate = steep / (0.04 * self.scale**2 * self.machine.inertia(row))
+        return "radau" if rate.max() * self.machine.period > _STEEP else "dop853"
+
     def _rate(self, phi: float, y: Any) -> tuple[float, float]:
         row = self.machine.rows(phi)
         energy, inertia = max(float(y[0]), 0.1 * _REST * self._usual), self.machine.inertia(row)
@@ -205,14 +228,14 @@ class RigidRun(ShortRepr):
     def _modes(self) -> dict[str, Mode]:
         least = _REST * self._usual
         stop = Switch(lambda _, y: float(y[0]) - least, STANDS, 0.0, dips=False)
-        return {MOVES: Mode(self._rate, (stop,)), STANDS: Mode(lambda *_: (0.0, 0.0))}
+        return {MOVES: Mode(self._rate, (stop,)), STANDS: Mode(lambda *_: (0.0, 0.0), last=True)}
 
     def _integrated(
         self, energy: float, time: float, knots: Array, keep: float = -math.inf
     ) -> RigidMotion:
         tiny = 1e-3 * self.rtol
         atol = (tiny * self._usual, tiny * TURN / self.scale)
-        integrator = Integrator(method="dop853", rtol=self.rtol, atol=atol)
+        integrator = Integrator(method=self.method, rtol=self.rtol, atol=atol)
         motion = integrator(self._modes, (MOVES, [energy, time]), [*knots], keep=keep)
         return RigidMotion(machine=self.machine, motor=self.motor, knots=knots, motion=motion)
 

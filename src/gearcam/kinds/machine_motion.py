@@ -148,6 +148,9 @@ def speed_powers(
         raise InfeasibleError(what, where="load", nearest="such as 200 + 3*v or 0.1*v**2")
     speeds = speed * (1.0 - np.cos(np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1)))
     to_powers = np.linalg.inv(np.vander(speeds, increasing=True))
+    # powers that the polynomial does not have are rounding
+    sizes = np.abs(fit).max(axis=1)
+    to_powers[sizes <= _SAME * sizes.max()] = 0.0
     return lambda phi: to_powers @ np.array([load(phi, float(one)) for one in speeds])
 
 
@@ -274,11 +277,10 @@ class MachineRun(ShortRepr):
     @cached_property
     def places(self) -> Array:
         """The driver's angles of the table, rad: even steps, and both sides of knots."""
-        knots = self.motion.knots
-        end = knots[-1] if self.motion.stopped is None else self.motion.stopped
-        turns = (end - knots[0]) / self.machine.period
+        low, high = self.motion.ends
+        turns = (high - low) / self.machine.period
         count = max(2, min(_ROWS, math.ceil(turns * self.spec.steps) + 1))
-        return with_both_sides(np.linspace(knots[0], end, count), knots)
+        return with_both_sides(np.linspace(low, high, count), self.motion.knots)
 
     def columns(self) -> dict[str, Array]:
         """Return the columns of ``dynamics.csv`` that all machines have."""

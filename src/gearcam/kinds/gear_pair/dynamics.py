@@ -19,17 +19,19 @@ from gearcam.kinds.gear_pair.forces import PairUnderLoad, extreme_fact
 from gearcam.kinds.machine_motion import MachineRun, speed_powers, usual_speed
 from gearcam.kinds.machine_motion import demand as demand_run
 from gearcam.laws.ratio.span import angle_text
+from gearcam.meshing.contact import contacts
 from gearcam.meshing.settings import DYNAMIC_FORCES
-from gearcam.numeric import narrowing
 from gearcam.numeric.chebyshev import NotSmoothError
 from gearcam.numeric.piecewise import with_both_sides
+from gearcam.numeric.roots import bracketed_root
 from gearcam.results.study import StudyResult
 
 if TYPE_CHECKING:
     from gearcam.dynamics.rigid import RigidMotion
+    from gearcam.gears.contact import FlankPairs
     from gearcam.kinds.gear_pair.result import GearPairResult
     from gearcam.meshing.force_checks import LoadedPair
-    from gearcam.numeric.arrays import Array, Ints
+    from gearcam.numeric.arrays import Array
     from gearcam.pictures.charts import Chart
     from gearcam.results.study import Progress
 
@@ -47,6 +49,9 @@ _CLOSE: Final = 1e-13
 
 _EXACT: Final = 1e-11
 """Error of tables over the largest value."""
+
+_OF_CONTACTS: Final = 1e-9
+"""The same with friction: that of places of contact."""
 
 
 def demand(design: Any) -> None:
@@ -136,7 +141,8 @@ def machine_of(under: PairUnderLoad, inertia: tuple[float, float], speed: float)
         return np.stack([ratio, slope, *more, *coefficients(phi1)])
 
     try:
-        tabled = Tabled(rows, knots, _EXACT, closed=under.turns)
+        exact = _OF_CONTACTS if rubs else _EXACT
+        tabled = Tabled(rows, knots, exact, closed=under.turns)
     except NotSmoothError as error:
         what = f"ratio or load is {'not smooth' if error.finite else 'not finite'}"
         raise InfeasibleError(f"{what} at {angle_text(error.place)}", where="load") from error
@@ -149,21 +155,29 @@ def _turns_of_friction(under: PairUnderLoad, knots: Array) -> Array:
     Backlash moves these places away from the pitch point.
     """
     count = _PER_TOOTH * under.result.pair.teeth[0]
-
-    def states(phi1: Array) -> Array:
-        found = np.zeros(phi1.shape)
-        for factor, sign in ((1.0, 1.0), (100.0, -1.0)):
-            points = under.forces(phi1, np.full(phi1.shape, sign)).teeth.points
-            np.add.at(found, points.step, factor * (10.0 + np.sign(points.sliding)))
-        return found
-
-    def function(places: Array, rows: Ints) -> Array:  # noqa: ARG001
-        return states(places.ravel()).reshape(places.shape)
-
     x = with_both_sides(np.linspace(0.0, under.travel, count + 1), knots)
-    at = np.flatnonzero(np.diff(states(x)))
-    low, high = narrowing.changes(function, x[at], x[at + 1], _CLOSE * under.travel)
-    return 0.5 * (low + high)
+    roots = [_reversals(pairs, x) for both in under.sides for pairs in both]
+    return np.concatenate(roots)
+
+
+def _reversals(pairs: FlankPairs, x: Array) -> Array:
+    """Return where contacts of a side cease to slide, between neighbouring angles `x`."""
+    found = contacts(pairs, x)
+    order = np.lexsort((found.step, found.pair))
+    step, pair, sliding = found.step[order], found.pair[order], found.sliding[order]
+    beside = (np.diff(pair) == 0) & (np.diff(step) == 1)
+    at = np.flatnonzero(beside & (sliding[:-1] * sliding[1:] < 0.0))
+
+    def own(phi1: Array) -> Array:
+        """Return the sliding of each of these contacts at an angle."""
+        there = contacts(pairs, phi1)
+        row = np.flatnonzero(there.pair == pair[at][there.step])
+        made = np.full(phi1.shape, np.nan)
+        made[there.step[row]] = there.sliding[row]
+        return made
+
+    ends = sliding[at], sliding[at + 1]
+    return bracketed_root(own, x[step[at]], x[step[at + 1]], _CLOSE * x[-1], ends)
 
 
 def _taken(under: PairUnderLoad, phi1: Array, sign: float) -> Array:
