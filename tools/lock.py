@@ -35,7 +35,9 @@ SECTIONS = {
     "lock": ["--group", "lock"],
 }
 TOOLS = ["--group", "install", "--group", "test"]
-_MORE = ["--extra", "sweep", "--extra", "optimize", "--extra", "stress"]
+_MORE = [
+    word for name in ("sweep", "optimize", "stress", "dynamics") for word in ("--extra", name)
+]
 HEAD = """\
 # Written by `make lock`; installed by the Makefile, section by section.
 """
