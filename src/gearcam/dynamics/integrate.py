@@ -6,7 +6,7 @@ negative the motion *switches* to another mode. Integration starts anew at each 
 so that no step crosses one; a step that ends beyond a switch is cut there, by a root of its dense
 output. The switch happens a hair beyond the limit, so that the next mode begins within its own.
 
-The steps are those of scipy's integrators.
+The steps are those of scipy's integrators. Which of them, `auto` decides as it goes (see `choice`).
 """
 
 from __future__ import annotations
@@ -20,10 +20,11 @@ from numpy.typing import ArrayLike
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import InfeasibleError
+from gearcam.dynamics.choice import Choice
 from gearcam.numeric.arrays import Array
 
-METHODS: Final = ("radau", "bdf", "lsoda", "dop853")
-"""Integrators by name."""
+METHODS: Final = ("auto", "radau", "bdf", "lsoda", "dop853")
+"""Methods by name: `auto` is DOP853 or Radau, whichever is faster there."""
 
 _CLASSES: Final = {"radau": "Radau", "bdf": "BDF", "lsoda": "LSODA", "dop853": "DOP853"}
 
@@ -32,6 +33,14 @@ _MOST: Final = 1_000_000
 
 _BETWEEN: Final = (0.25, 0.5, 0.75)
 """Where within a step a mode is looked at: it may end and come back in one step."""
+
+_HERMITE: Final = np.array(
+    [
+        [(1 + 2 * s) * (1 - s) ** 2, s * (1 - s) ** 2, s * s * (3 - 2 * s), s * s * (s - 1)]
+        for s in (0.0, *_BETWEEN, 1.0)
+    ]
+)
+"""Weights of the cubic through states and rates at the ends of a step."""
 
 Rate = Callable[[float, Any], Sequence[float]]
 """``rate(x, y)``: derivatives of the state."""
@@ -45,7 +54,7 @@ class Switch(NamedTuple):
     holds : callable
         ``holds(x, y)`` is not negative while the mode goes on.
     to : str
-        Name of the mode that follows.
+        Name of the mode that follows; the motion ends there if there is no such mode.
     hair : float
         How far below 0 it falls before the switch: rounding of the function.
     """
@@ -65,10 +74,16 @@ class Mode(ShortRepr):
         ``rate(x, y)`` returns the derivatives of the state, as a list of floats.
     switches : tuple of Switch
         Its ends.
+    jacobian : callable or None
+        ``jacobian(x, y)``, (m, m): derivatives of the rates by the state; None: by differences.
+    pace : callable or None
+        ``pace(x, y)``: natural frequency, in rad per unit of x; None if nothing vibrates.
     """
 
     rate: Rate
     switches: tuple[Switch, ...] = ()
+    jacobian: Callable[[float, Any], Sequence[Sequence[float]]] | None = None
+    pace: Callable[[float, Any], float] | None = None
 
 
 class Piece(NamedTuple):
@@ -96,8 +111,10 @@ class Motion(ShortRepr):
 
     Parameters
     ----------
+    place : float
+        Where it ends.
     end : (m,) array
-        The state at the end.
+        The state there.
     mode : str
         The mode there.
     pieces : list of Piece
@@ -108,6 +125,7 @@ class Motion(ShortRepr):
         Number of evaluations of the equations, and of steps.
     """
 
+    place: float
     end: Array
     mode: str
     pieces: list[Piece] = field(repr=False)
@@ -198,10 +216,14 @@ class Integrator(ShortRepr):
         mode, state = start
         y = np.asarray(state, dtype=float)
         run = _Run(self, modes, keep)
-        for low, high in zip(knots[:-1], knots[1:], strict=True):
-            mode, y = run.stretch(mode, y, float(low), float(high))
-            passed(float(high))
+        place = float(knots[0])
+        for high in map(float, knots[1:]):
+            place, mode, y = run.stretch(mode, y, place, high)
+            if mode not in modes:
+                break
+            passed(high)
         return Motion(
+            place=place,
             end=y,
             mode=mode,
             pieces=run.pieces,
@@ -217,31 +239,32 @@ class _Run:
     def __init__(self, integrator: Integrator, modes: Mapping[str, Mode], keep: float) -> None:
         from scipy import integrate
 
-        self._made = getattr(integrate, _CLASSES[integrator.method])
+        self._made = {name: getattr(integrate, one) for name, one in _CLASSES.items()}
+        self._choice = Choice() if integrator.method == "auto" else None
         self._integrator, self._modes, self._keep = integrator, modes, keep
         self.pieces: list[Piece] = []
         self.switches: list[tuple[float, str, str]] = []
         self.evaluations = self.steps = 0
         self._width: float | None = None
 
-    def stretch(self, mode: str, y: Array, low: float, high: float) -> tuple[str, Array]:
-        """Return mode and state at the end of a stretch between knots."""
+    def stretch(self, mode: str, y: Array, low: float, high: float) -> tuple[float, str, Array]:
+        """Return place, mode and state at the end of a stretch between knots."""
         x = low
-        while x < high:
-            x, y, after = self._until_switch(mode, y, x, high)
+        while x < high and mode in self._modes:
+            x, y, after = self._smooth(mode, y, x, high)
             if after != mode:
                 self.switches.append((x, mode, after))
                 if len(self.switches) > _MOST:
                     what = f"{_MOST} switches between {mode} and {after} up to {x:.6g} rad"
                     raise InfeasibleError(what, where="dynamics", nearest="more damping")
                 mode = after
-        return mode, y
+        return x, mode, y
 
-    def _until_switch(self, name: str, y: Array, x: float, end: float) -> tuple[float, Array, str]:
-        """Integrate in one mode; return place, state and mode at its end or at the knot."""
-        mode, given = self._modes[name], self._integrator
-        width = None if self._width is None else min(self._width, end - x)
-        solver = self._made(mode.rate, x, y, end, rtol=given.rtol, atol=given.atol, first_step=width)
+    def _smooth(self, name: str, y: Array, x: float, end: float) -> tuple[float, Array, str]:
+        """Integrate in one mode by one method; return place, state and mode at the end of it."""
+        mode, choice = self._modes[name], self._choice
+        solver = self._solver(mode, x, y, end)
+        longest = 0.0  # the last step may have been cut
         try:
             while solver.status == "running":
                 solver.step()
@@ -252,25 +275,58 @@ class _Run:
                 cut = self._kept(solver, name, mode)
                 if cut is not None:
                     return cut
+                if choice and mode.pace and choice.changes(solver, mode.pace(solver.t, solver.y)):
+                    return float(solver.t), solver.y, name
+                longest = max(float(solver.step_size), 0.5 * longest)
         finally:
             self.evaluations += solver.nfev
-            self._width = solver.step_size or self._width
+            self._width = max(longest, float(solver.step_size or 0.0)) or self._width
         return end, solver.y, name
+
+    def _solver(self, mode: Mode, x: float, y: Array, end: float) -> Any:
+        """Return an integrator that begins with steps as long as the last ones."""
+        given, method = self._integrator, self._choice.method if self._choice else None
+        method = method or given.method
+        width = None if self._width is None else min(self._width, end - x)
+        jacobian = {} if method == "dop853" else {"jac": mode.jacobian}
+        return self._made[method](
+            mode.rate, x, y, end, rtol=given.rtol, atol=given.atol, first_step=width, **jacobian
+        )
 
     def _kept(self, solver: Any, name: str, mode: Mode) -> tuple[float, Array, str] | None:
         """Keep the last step; return where it switches, the state there and the next mode."""
         low, high = float(solver.t_old), float(solver.t)
-        if not mode.switches and high < self._keep:
+        wanted = high >= self._keep
+        likely = [one for one in mode.switches if not _holds_throughout(one, solver)]
+        if not likely and not wanted:
             return None
         at = solver.dense_output()
         first: tuple[float, Switch] | None = None
-        for switch in mode.switches:
+        for switch in likely:
             place = _crossing(switch, at, low, high)
             if place is not None and (first is None or place < first[0]):
                 first = place, switch
         if (first[0] if first else high) >= self._keep:
             self.pieces.append(Piece(low, first[0] if first else high, name, at))
         return None if first is None else (first[0], at(first[0]), first[1].to)
+
+
+def _holds_throughout(switch: Switch, solver: Any) -> bool:
+    """Return whether a mode is far from its end in a step, by the cubic over it.
+
+    Only where it is known without a dense output, which costs DOP853 a quarter more.
+    """
+    if not hasattr(solver, "K"):
+        return False
+    low, width = solver.t_old, solver.t - solver.t_old
+    ends = (solver.y_old, width * solver.K[0], solver.y, width * solver.f)
+    states = _HERMITE @ np.array(ends)
+    values = [
+        switch.holds(low + share * width, state)
+        for share, state in zip((0.0, *_BETWEEN, 1.0), states.tolist(), strict=True)
+    ]
+    least = min(values)
+    return least > max(values) - least
 
 
 def _crossing(switch: Switch, at: Callable[[float], Array], low: float, high: float) -> float | None:

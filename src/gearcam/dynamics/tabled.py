@@ -9,6 +9,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Callable
 from functools import cached_property
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,6 +17,10 @@ from numpy.typing import ArrayLike
 from gearcam.base.display import ShortRepr
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import Expansion, expand
+
+
+_ANY: Final = 1e300
+"""A tolerance that all functions meet; 0 too, unlike infinity."""
 
 
 class Tabled(ShortRepr):
@@ -60,7 +65,7 @@ class Tabled(ShortRepr):
 
             edges = expand(one, edges, tolerance, cuts=cuts).knots
         self._columns = [
-            expand(lambda x, k=k: functions(x)[k], edges, np.inf, cuts=1) for k in range(count)
+            expand(lambda x, k=k: functions(x)[k], edges, _ANY, cuts=1) for k in range(count)
         ]
 
     @cached_property

@@ -1,0 +1,85 @@
+"""Which integrator is faster there: the explicit DOP853 or the implicit Radau.
+
+DOP853 follows vibrations with least work. Once they have died away it is still bound to steps of
+about a natural period, beyond which it is not stable; Radau then takes steps as long as what happens
+allows, each for several times the work. So DOP853 goes on until its steps are as long as stability
+allows; then Radau is tried, and goes on while it costs less for the way that it makes. A trial that
+fails is repeated after twice as many steps, so that all trials together cost little.
+
+Work is counted in evaluations with fixed weights, not in seconds: the same on every machine.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+_STABLE: Final = 4.0
+"""Steps of DOP853, in rad of the natural vibration, from where on it may be stability that binds:
+the limit is about 6."""
+
+_FIRST: Final = 8
+"""Number of such steps, one after the other, before the first trial."""
+
+_SETTLED: Final = 5
+"""Steps in which Radau reaches its length of steps."""
+
+_WINDOW: Final = 4
+"""Steps over which its work is looked at."""
+
+_WEIGHT: Final = 1.8
+"""Time of an evaluation in Radau, with all that belongs to it, over that in DOP853."""
+
+
+class Choice:
+    """The method in use, and when it changes."""
+
+    def __init__(self) -> None:
+        self.method = "dop853"
+        self._wait = _FIRST
+        self._explicit = 0.0  # evaluations of DOP853 for a rad of the vibration
+        self._solver: Any = None
+        self._seen = 0
+        self._restart()
+
+    def _restart(self, settling: int = 0) -> None:
+        self._steps, self._work, self._way = -settling, 0, 0.0
+
+    def changes(self, solver: Any, pace: float) -> bool:
+        """Return whether another method goes on after a step.
+
+        Parameters
+        ----------
+        solver : OdeSolver
+            The integrator that made it.
+        pace : float
+            Natural frequency, rad per unit of the integration variable.
+        """
+        if solver is not self._solver:
+            self._solver, self._seen = solver, 0
+        way, work = float(solver.step_size) * pace, solver.nfev - self._seen
+        self._seen = solver.nfev
+        self._steps += 1
+        if self._steps > 0:
+            self._work += work
+            self._way += way
+        return self._to_radau(way) if self.method == "dop853" else self._to_explicit()
+
+    def _to_radau(self, way: float) -> bool:
+        if way < _STABLE:
+            self._restart()
+        elif self._steps >= self._wait:
+            self.method, self._explicit = "radau", self._work / self._way
+            self._restart(_SETTLED)
+            return True
+        return False
+
+    def _to_explicit(self) -> bool:
+        if self._steps < _WINDOW:
+            return False
+        slower = _WEIGHT * self._work > self._explicit * self._way
+        self._restart()
+        if slower:
+            self.method, self._wait = "dop853", 2 * self._wait
+        else:
+            self._wait = _FIRST
+        return slower
