@@ -34,6 +34,15 @@ _MOST: Final = 1_000_000
 _BETWEEN: Final = (0.25, 0.5, 0.75)
 """Where within a step a mode is looked at: it may end and come back in one step."""
 
+_SLIGHTLY: Final = 1e-6
+"""Part of a step in which a condition is linear."""
+
+_NEAR: Final = 1e-2
+"""Largest part of a step by which a switch is corrected."""
+
+_ROUNDINGS: Final = 8.0
+"""Rounding of a knot, over that of the number: knots are repeated with the turn."""
+
 _HERMITE: Final = np.array(
     [
         [(1 + 2 * s) * (1 - s) ** 2, s * (1 - s) ** 2, s * s * (3 - 2 * s), s * s * (s - 1)]
@@ -134,8 +143,16 @@ class Motion(ShortRepr):
     steps: int
 
     def at(self, x: ArrayLike) -> Array:
-        """Return the state, (m, n), at places `x`, (n,), among its pieces; at a switch after it."""
+        """Return the state, (m, n), at places `x`, (n,), among its pieces; at a switch after it.
+
+        Raises
+        ------
+        ValueError
+            If a place is not among them.
+        """
         x = np.asarray(x, dtype=float)
+        if x.size and not self.pieces[0].low <= x.min() <= x.max() <= self.place:
+            raise ValueError(f"kept from {self.pieces[0].low} to {self.place} only")
         number = self._number(x)
         found = np.empty((len(self.end), x.size))
         for one in np.unique(number).tolist():
@@ -249,9 +266,9 @@ class _Run:
 
     def stretch(self, mode: str, y: Array, low: float, high: float) -> tuple[float, str, Array]:
         """Return place, mode and state at the end of a stretch between knots."""
-        x = low
+        x, inner = low, _inner(low, high)
         while x < high and mode in self._modes:
-            x, y, after = self._smooth(mode, y, x, high)
+            x, y, after = self._smooth(mode, y, x, high, inner)
             if after != mode:
                 self.switches.append((x, mode, after))
                 if len(self.switches) > _MOST:
@@ -260,9 +277,11 @@ class _Run:
                 mode = after
         return x, mode, y
 
-    def _smooth(self, name: str, y: Array, x: float, end: float) -> tuple[float, Array, str]:
+    def _smooth(
+        self, name: str, y: Array, x: float, end: float, inner: tuple[float, float]
+    ) -> tuple[float, Array, str]:
         """Integrate in one mode by one method; return place, state and mode at the end of it."""
-        mode, choice = self._modes[name], self._choice
+        mode, choice = _within(self._modes[name], *inner), self._choice
         solver = self._solver(mode, x, y, end)
         longest = 0.0  # the last step may have been cut
         try:
@@ -270,6 +289,8 @@ class _Run:
                 solver.step()
                 self.steps += 1
                 if solver.status == "failed":
+                    if choice and choice.fails():
+                        return float(solver.t), solver.y, name
                     what = f"the motion cannot be integrated beyond {solver.t:.6g} rad"
                     raise InfeasibleError(what, where="dynamics.tolerance", nearest="a larger one")
                 cut = self._kept(solver, name, mode)
@@ -308,7 +329,51 @@ class _Run:
                 first = place, switch
         if (first[0] if first else high) >= self._keep:
             self.pieces.append(Piece(low, first[0] if first else high, name, at))
-        return None if first is None else (first[0], at(first[0]), first[1].to)
+        if first is None:
+            return None
+        if not hasattr(solver, "K"):
+            return first[0], at(first[0]), first[1].to
+        return self._again(solver, mode.rate, *first)
+
+    def _again(
+        self, solver: Any, rate: Rate, place: float, switch: Switch
+    ) -> tuple[float, Array, str]:
+        """Return place, state and mode of a switch, by a step that ends there.
+
+        The dense output of DOP853 is less accurate than its steps, and what is missed at each of
+        many switches does not fall with the tolerance.
+        """
+        low, high = float(solver.t_old), float(solver.t)
+        step = type(solver)(
+            rate, low, solver.y_old, place, rtol=1.0, atol=np.inf, first_step=place - low
+        )
+        step.step()
+        self.evaluations += step.nfev
+        left = switch.holds(place, step.y) + switch.hair
+        width = _SLIGHTLY * (high - low)
+        slope = (switch.holds(place + width, step.y + width * step.f) - left + switch.hair) / width
+        more = -left / slope if slope else 0.0
+        more = more if abs(more) <= _NEAR * (high - low) and place + more > low else 0.0
+        return place + more, step.y + more * step.f, switch.to
+
+
+def _inner(low: float, high: float) -> tuple[float, float]:
+    """Return the ends of a stretch, moved inwards by more than their rounding.
+
+    At a knot, functions may have the value of the other side.
+    """
+    rounding = _ROUNDINGS * float(np.spacing(max(abs(low), abs(high))))
+    middle = 0.5 * (low + high)
+    return min(low + rounding, middle), max(high - rounding, middle)
+
+
+def _within(mode: Mode, low: float, high: float) -> Mode:
+    """Return a mode whose rates are taken between two places."""
+
+    def rate(x: float, y: Any) -> Sequence[float]:
+        return mode.rate(low if x < low else high if x > high else x, y)
+
+    return replace(mode, rate=rate)
 
 
 def _holds_throughout(switch: Switch, solver: Any) -> bool:

@@ -19,7 +19,7 @@ from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import Expansion, expand
 
 
-_ANY: Final = 1e300
+_ANY: Final = 1e100
 """A tolerance that all functions meet; 0 too, unlike infinity."""
 
 
