@@ -17,7 +17,8 @@ Friction makes the driver's torque kappa*Q instead of i*Q; kappa depends on whic
 
 States are the time, w1, e, e' and three works: of the motor, on the load, and lost. Integrated over
 phi1, so that w1 must stay above 0: a machine whose speed falls to a small part of that at the start
-*stalls*.
+*stalls*. Time and w1 are integrated as differences from an even turning, since tolerances are
+relative: a small part of w1 may be all of a vibration.
 """
 
 from __future__ import annotations
@@ -50,9 +51,9 @@ _DIFFERENCE: Final = 1e-6
 _PLACES: Final = 512
 """Places of a turn at which scales and frequencies are found."""
 
-_OF_STEP: Final = 0.2
-"""Tolerance of a step over that of the run: after twenty impacts in play of 0.2 mrad the lag is then
-within five times the tolerance."""
+_OF_STEP: Final = 0.05
+"""Tolerance of a step over that of the run: twenty impacts in play then leave the lag right to five
+times the tolerance of the play."""
 
 _PILOT: Final = 300.0
 """Natural periods of the stretch from which the run time is foretold, a quarter of a turn at most."""
@@ -161,7 +162,7 @@ class StiffPair(ShortRepr):
         """Return the modes of a run that begins with a speed, rad/s."""
         table, floor = self.table, _STALLED * speed
         hair = _HAIR * float(table.at(self.places)[4].max())
-        stall = Switch(lambda _, y: y[1] - floor, STALL, 0.0)
+        stall = Switch(lambda _, y: y[1] + speed - floor, STALL, 0.0)
 
         def beyond(sign: float, of: float, to: str) -> Switch:
             """Return the switch at one end of the play: `of` is 1 for contact, -1 for play."""
@@ -172,53 +173,53 @@ class StiffPair(ShortRepr):
             return Switch(holds, to, hair)
 
         if not self._has_play:
-            return {MESH: self._mode(0.0, True, 0.1 * floor, (stall,))}
+            return {MESH: self._mode(0.0, True, speed, (stall,))}
         touching = {DRIVE: 1.0, COAST: -1.0}
         ends = tuple(beyond(sign, -1.0, name) for name, sign in touching.items())
-        modes = {PLAY: self._mode(0.0, False, 0.1 * floor, (*ends, stall))}
+        modes = {PLAY: self._mode(0.0, False, speed, (*ends, stall))}
         for name, sign in touching.items():
-            switches = beyond(sign, 1.0, PLAY), stall
-            modes[name] = self._mode(sign, True, 0.1 * floor, switches)
+            modes[name] = self._mode(sign, True, speed, (beyond(sign, 1.0, PLAY), stall))
         return modes
 
-    def _mode(self, sign: float, touches: bool, floor: float, switches: Any) -> Mode:
-        """Return the equations of a mode; speeds below the floor, in trial steps, count as it."""
+    def _mode(self, sign: float, touches: bool, speed: float, switches: Any) -> Mode:
+        """Return the equations of a mode; `speed` is that of the start."""
         table, motor, load, (j1, j2) = self.table, self.motor, self.load, self.inertia
-        c, half = self.damping, 0.5 * sign
+        c, half, even = float(self.damping), 0.5 * sign, 1.0 / speed
+        floor = 0.1 * _STALLED * speed  # in trial steps it may be less
 
         def touching(x: float, y: Any) -> list[float]:
             _, w, e, v, _, _, _ = y.tolist()
-            w = max(w, floor)
+            w = max(w + speed, floor)
             i, di, k, dk, b, db, *rubs = table(x)
             g = e - half * b
             spring = k * g
             q = spring + c * v
-            lost = (rubs[q < 0.0] - i) * q if rubs else 0.0
+            lost = (rubs[1 if q < 0.0 else 0] - i) * q if rubs else 0.0
             m1, w2 = motor(w), i * w - v
             m2 = load(x, w2)
             a1 = (m1 - i * q - lost - 0.5 * dk * g * g + half * db * spring) / j1
             slip = i * a1 + di * w * w - (q - m2) / j2
             r = 1.0 / w
-            return [r, a1 * r, v * r, slip * r, m1, m2 * w2 * r, c * v * v * r + lost]
+            return [r - even, a1 * r, v * r, slip * r, m1, m2 * w2 * r, c * v * v * r + lost]
 
         def apart(x: float, y: Any) -> list[float]:
             _, w, _, v, _, _, _ = y.tolist()
-            w = max(w, floor)
+            w = max(w + speed, floor)
             i, di = table(x)[:2]
             m1, w2 = motor(w), i * w - v
             m2 = load(x, w2)
             a1 = m1 / j1
             r = 1.0 / w
-            return [r, a1 * r, v * r, (i * a1 + di * w * w + m2 / j2) * r, m1, m2 * w2 * r, 0.0]
+            return [r - even, a1 * r, v * r, (i * a1 + di * w * w + m2 / j2) * r, m1, m2 * w2 * r, 0.0]
 
         def jacobian(x: float, y: Any) -> list[list[float]]:
             rate = touching(x, y)
             _, w, e, v, _, _, _ = y.tolist()
-            w = max(w, floor)
+            w = max(w + speed, floor)
             i, di, k, dk, b, db, *rubs = table(x)
             g, r, w2 = e - half * b, 1.0 / w, i * w - v
             q = k * g + c * v
-            kappa = rubs[q < 0.0] if rubs else i
+            kappa = rubs[1 if q < 0.0 else 0] if rubs else i
             step = _DIFFERENCE * w
             dm1 = (motor(w + step) - motor(w)) / step
             m2 = load(x, w2)
@@ -243,7 +244,7 @@ class StiffPair(ShortRepr):
 
         def pace(x: float, y: Any) -> float:
             i, _, k = table(x)[:3]
-            return math.sqrt(k * (1.0 / j2 + i * i / j1)) / max(float(y[1]), floor)
+            return math.sqrt(k * (1.0 / j2 + i * i / j1)) / max(float(y[1]) + speed, floor)
 
         if touches:
             return Mode(touching, switches, jacobian, pace)
@@ -256,8 +257,9 @@ class StiffPair(ShortRepr):
         pace = float(self.frequency(self.places).max())
         half = 0.5 * float(play.max())
         lag = max(half + torque / float(stiffness.min()), abs(start.lag), abs(start.slip) / pace)
+        lag = lag or start.w1 / pace  # nothing acts
         energy = self.energy(start.phi1, (0.0, start.w1, start.lag, start.slip))
-        return (1.0 / start.w1, 1e-3 * start.w1, lag, lag * pace, *3 * (energy,))
+        return (1.0 / pace, lag * pace, lag, lag * pace, *3 * (energy,))
 
     def periods(self, start: StiffState, end: float) -> float:
         """Return the number of natural periods up to a driver angle at the speed of the start."""
@@ -288,7 +290,7 @@ class StiffPair(ShortRepr):
         method : str
             Of `METHODS`.
         rtol : float
-            Tolerance: of a fifth of it for each step.
+            Tolerance; a step has a twentieth of it.
         keep : float, rad
             From where on the motion is kept; from the start by default.
         passed : callable
@@ -313,7 +315,7 @@ class StiffPair(ShortRepr):
         integrate = Integrator(method=method, rtol=part, atol=tuple(part * s for s in scales))
         motion = integrate(
             self._modes(start.w1),
-            (self._mode_of(start.phi1, start.lag), (0.0, *start[1:], 0.0, 0.0, 0.0)),
+            (self._mode_of(start.phi1, start.lag), (0.0, 0.0, start.lag, start.slip, 0.0, 0.0, 0.0)),
             self._knots(knots, start.phi1, end),
             keep=start.phi1 if keep is None else keep,
             passed=passed,
@@ -388,12 +390,31 @@ class StiffRun(ShortRepr):
     start : StiffState
         How it began.
     motion : Motion
-        The motion: time, w1, e, e', works of the motor, on the load, and lost.
+        The motion: time and w1 less those of an even turning, e, e', and the works.
     """
 
     pair: StiffPair
     start: StiffState
     motion: Motion = field(repr=False)
+
+    def states(self, phi1: ArrayLike) -> Array:
+        """Return the states, (7, n), at driver angles, rad, (n,), within the part that is kept.
+
+        Time (s), w1 (rad/s), e (rad), e' (rad/s), works of the motor, on the load, and lost (J).
+        """
+        phi1 = np.asarray(phi1, dtype=float)
+        return self._with_even(phi1, self.motion.at(phi1))
+
+    def _with_even(self, phi1: ArrayLike, states: Array) -> Array:
+        made = states.copy()
+        made[0] += (phi1 - np.float64(self.start.phi1)) / self.start.w1
+        made[1] += self.start.w1
+        return made
+
+    @cached_property
+    def end(self) -> Array:
+        """The states at the end, (7,)."""
+        return self._with_even(self.motion.place, self.motion.end)
 
     @property
     def stalled(self) -> tuple[float, float] | None:
@@ -411,9 +432,9 @@ class StiffRun(ShortRepr):
         In is what it had at the start and the motor's work, out what it has at the end, the work on
         the load and what was lost; a negative work counts on the other side.
         """
-        motor, load, lost = self.motion.end[4:].tolist()
+        motor, load, lost = self.end[4:].tolist()
         before = self.pair.energy(self.start.phi1, (0.0, *self.start[1:]))
-        after = self.pair.energy(self.motion.place, self.motion.end)
+        after = self.pair.energy(self.motion.place, self.end)
         into = before + max(motor, 0.0) + max(-load, 0.0)
         out = after + lost + max(load, 0.0) + max(-motor, 0.0)
         return abs(into - out) / max(into, out)
@@ -447,7 +468,7 @@ class StiffRun(ShortRepr):
         sign = {DRIVE: 0.5, COAST: -0.5}.get(onto)
         if sign is None:
             return 0.0
-        _, w1, _, slip = self.motion.at([place])[:4, 0].tolist()
+        _, w1, _, slip = self.states([place])[:4, 0].tolist()
         return abs(slip - sign * self.pair.table(place)[5] * w1)
 
     def at(self, phi1: ArrayLike) -> dict[str, Array]:
@@ -461,7 +482,7 @@ class StiffRun(ShortRepr):
         """
         phi1 = np.asarray(phi1, dtype=float)
         pair = self.pair
-        t, w1, lag, slip = self.motion.at(phi1)[:4]
+        t, w1, lag, slip = self.states(phi1)[:4]
         ratio, _, stiffness, _, play, _, *rubs = pair.table.at(phi1)
         modes = self.motion.modes(phi1)
         sign = np.array([{DRIVE: 1.0, COAST: -1.0}.get(one, 0.0) for one in modes])
