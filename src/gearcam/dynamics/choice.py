@@ -57,7 +57,7 @@ class Choice:
         solver : OdeSolver
             The integrator that made it.
         pace : float
-            Natural frequency, rad per unit of the integration variable.
+            Of the mode (see `Mode`).
         """
         if solver is not self._solver:
             self._solver, self._seen = solver, 0

@@ -86,7 +86,8 @@ class Mode(ShortRepr):
     jacobian : callable or None
         ``jacobian(x, y)``, (m, m): derivatives of the rates by the state; None: by differences.
     pace : callable or None
-        ``pace(x, y)``: natural frequency, in rad per unit of x; None if nothing vibrates.
+        ``pace(x, y)``: size of the largest eigenvalue, a natural frequency in most cases, per unit
+        of x; None if nothing is stiff.
     """
 
     rate: Rate
@@ -275,7 +276,14 @@ class _Run:
                     what = f"{_MOST} switches between {mode} and {after} up to {x:.6g} rad"
                     raise InfeasibleError(what, where="dynamics", nearest="more damping")
                 mode = after
+                self._begin(mode, x, y)
         return x, mode, y
+
+    def _begin(self, name: str, x: float, y: Array) -> None:
+        """Begin a mode that may be much faster than the one before with a short step."""
+        mode = self._modes.get(name)
+        if mode and mode.pace and self._width:
+            self._width = min(self._width, 1.0 / mode.pace(x, y))
 
     def _smooth(
         self, name: str, y: Array, x: float, end: float, inner: tuple[float, float]
@@ -371,7 +379,7 @@ def _within(mode: Mode, low: float, high: float) -> Mode:
     """Return a mode whose rates are taken between two places."""
 
     def rate(x: float, y: Any) -> Sequence[float]:
-        return mode.rate(low if x < low else high if x > high else x, y)
+        return mode.rate(low if x < low else high if x > high else float(x), y)
 
     return replace(mode, rate=rate)
 
@@ -394,7 +402,9 @@ def _holds_throughout(switch: Switch, solver: Any) -> bool:
     return least > max(values) - least
 
 
-def _crossing(switch: Switch, at: Callable[[float], Array], low: float, high: float) -> float | None:
+def _crossing(
+    switch: Switch, at: Callable[[float], Array], low: float, high: float
+) -> float | None:
     """Return the first place in a step at which a mode ceases to hold, or None."""
 
     def left(x: float) -> float:
@@ -415,6 +425,12 @@ def _root(function: Callable[[float], float], low: float, high: float) -> float:
 
     if function(low) <= 0.0:  # it begins to fall at once
         return high
-    found, _ = brentq(function, low, high, xtol=4e-16 * max(abs(low), abs(high), 1e-300),
-                      rtol=8.9e-16, full_output=True)
+    found, _ = brentq(
+        function,
+        low,
+        high,
+        xtol=4e-16 * max(abs(low), abs(high), 1e-300),
+        rtol=8.9e-16,
+        full_output=True,
+    )
     return float(found)

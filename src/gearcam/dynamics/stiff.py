@@ -3,17 +3,16 @@
 The driven wheel *lags* by ``e = Phi(phi1) - phi2`` behind its nominal place. With the play b, an
 angle of the driven wheel, the teeth are bent by ``g = e - s*b/2`` on their driving flanks (s = 1,
 e > b/2) or coast flanks (s = -1, e < -b/2); between these they are in play. The stiffness K and the
-play change with the driver's angle, and the potential energy is ``V = K*g^2/2``. Lagrange's
-equations with ``w2 = i*w1 - e'`` are::
+play change with the driver's angle. Lagrange's equations with ``w2 = i*w1 - e'`` are::
 
-    J2*a2 = Q - M2                          Q = K*g + c*e', 0 in play
-    J1*a1 = M1 - T1 - dV/dphi1              T1 = kappa*Q
-    dV/dphi1 = K'*g^2/2 - s*K*g*b'/2
+    J2*a2 = Q - M2                                   Q = K*g + c*g', 0 in play
+    J1*a1 = M1 - (kappa - s*b'/2)*Q - K'*g^2/2       g' = e' - s*b'*w1/2
     e''   = i*a1 + i'*w1^2 - a2
 
-Friction makes the driver's torque kappa*Q instead of i*Q; kappa depends on which way Q acts. Then ::
+Friction makes the driver's torque kappa*Q instead of i*Q; kappa depends on which way Q acts. With
+the potential energy ``V = K*g^2/2``::
 
-    d(T + V)/dt = M1*w1 - M2*w2 - c*e'^2 - (kappa - i)*Q*w1
+    d(T + V)/dt = M1*w1 - M2*w2 - c*g'^2 - (kappa - i)*Q*w1
 
 States are the time, w1, e, e' and three works: of the motor, on the load, and lost. Integrated over
 phi1, so that w1 must stay above 0: a machine whose speed falls to a small part of that at the start
@@ -111,9 +110,7 @@ class StiffPair(ShortRepr):
     def places(self) -> Array:
         """Even places of a turn or travel, rad, without its end if closed."""
         table = self.table
-        return np.linspace(
-            table.low, table.low + table.period, _PLACES, endpoint=not table.closed
-        )
+        return np.linspace(table.low, table.low + table.period, _PLACES, endpoint=not table.closed)
 
     def frequency(self, phi1: ArrayLike) -> Array:
         """Return the natural frequency, rad/s, at driver angles: ``sqrt(K*(1/J2 + i^2/J1))``."""
@@ -191,16 +188,17 @@ class StiffPair(ShortRepr):
             _, w, e, v, _, _, _ = y.tolist()
             w = max(w + speed, floor)
             i, di, k, dk, b, db, *rubs = table(x)
-            g = e - half * b
-            spring = k * g
-            q = spring + c * v
+            g, moved = e - half * b, half * db
+            closing = v - moved * w
+            q = k * g + c * closing
             lost = (rubs[1 if q < 0.0 else 0] - i) * q if rubs else 0.0
             m1, w2 = motor(w), i * w - v
             m2 = load(x, w2)
-            a1 = (m1 - i * q - lost - 0.5 * dk * g * g + half * db * spring) / j1
+            a1 = (m1 - (i - moved) * q - lost - 0.5 * dk * g * g) / j1
             slip = i * a1 + di * w * w - (q - m2) / j2
             r = 1.0 / w
-            return [r - even, a1 * r, v * r, slip * r, m1, m2 * w2 * r, c * v * v * r + lost]
+            lost += c * closing * closing * r
+            return [r - even, a1 * r, v * r, slip * r, m1, m2 * w2 * r, lost]
 
         def apart(x: float, y: Any) -> list[float]:
             _, w, _, v, _, _, _ = y.tolist()
@@ -210,41 +208,59 @@ class StiffPair(ShortRepr):
             m2 = load(x, w2)
             a1 = m1 / j1
             r = 1.0 / w
-            return [r - even, a1 * r, v * r, (i * a1 + di * w * w + m2 / j2) * r, m1, m2 * w2 * r, 0.0]
+            return [
+                r - even,
+                a1 * r,
+                v * r,
+                (i * a1 + di * w * w + m2 / j2) * r,
+                m1,
+                m2 * w2 * r,
+                0.0,
+            ]
 
         def jacobian(x: float, y: Any) -> list[list[float]]:
             rate = touching(x, y)
             _, w, e, v, _, _, _ = y.tolist()
             w = max(w + speed, floor)
             i, di, k, dk, b, db, *rubs = table(x)
-            g, r, w2 = e - half * b, 1.0 / w, i * w - v
-            q = k * g + c * v
-            kappa = rubs[1 if q < 0.0 else 0] if rubs else i
+            g, moved, r, w2 = e - half * b, half * db, 1.0 / w, i * w - v
+            closing = v - moved * w
+            kappa = rubs[1 if k * g + c * closing < 0.0 else 0] if rubs else i
             step = _DIFFERENCE * w
             dm1 = (motor(w + step) - motor(w)) / step
             m2 = load(x, w2)
             dm2 = (load(x, w2 + step) - m2) / step
             # columns w1, e, e'; the time and works do not act back
-            a1 = dm1 / j1, (half * db * k - kappa * k - dk * g) / j1, -kappa * c / j1
-            a2 = -i * dm2 / j2, k / j2, (c + dm2) / j2
+            dq = -c * moved, k, c
+            a1 = [
+                (one - (kappa - moved) * q) / j1
+                for one, q in zip((dm1, -dk * g, 0.0), dq, strict=True)
+            ]
+            a2 = [(q - one) / j2 for one, q in zip((i * dm2, 0.0, -dm2), dq, strict=True)]
             slip = [i * one - two for one, two in zip(a1, a2, strict=True)]
             slip[0] += 2.0 * di * w
-            lost = kappa - i
-            on_load = (i * m2 + w2 * i * dm2) * r - m2 * w2 * r * r
+            lost = [(kappa - i) * q for q in dq]
+            lost[0] -= c * closing * (closing * r + 2.0 * moved) * r
+            lost[2] += 2.0 * c * closing * r
             rows = (
                 (-r * r, 0.0, 0.0),
                 ((a1[0] - rate[1]) * r, a1[1] * r, a1[2] * r),
                 (-v * r * r, 0.0, r),
                 ((slip[0] - rate[3]) * r, slip[1] * r, slip[2] * r),
                 (dm1, 0.0, 0.0),
-                (on_load, 0.0, -(m2 + w2 * dm2) * r),
-                (-c * v * v * r * r, lost * k, 2.0 * c * v * r + lost * c),
+                ((i * (m2 + w2 * dm2) - m2 * w2 * r) * r, 0.0, -(m2 + w2 * dm2) * r),
+                lost,
             )
             return [[0.0, *row, 0.0, 0.0, 0.0] for row in rows]
 
         def pace(x: float, y: Any) -> float:
+            w = max(float(y[1]) + speed, floor)
             i, _, k = table(x)[:3]
-            return math.sqrt(k * (1.0 / j2 + i * i / j1)) / max(float(y[1]) + speed, floor)
+            softness = 1.0 / j2 + i * i / j1
+            step = _DIFFERENCE * w
+            by_motor = abs(motor(w + step) - motor(w)) / (step * j1)
+            by_load = abs(load(x, i * w + step) - load(x, i * w)) / (step * j2)
+            return max(math.sqrt(k * softness), c * softness, by_motor, by_load) / w
 
         if touches:
             return Mode(touching, switches, jacobian, pace)
@@ -315,7 +331,10 @@ class StiffPair(ShortRepr):
         integrate = Integrator(method=method, rtol=part, atol=tuple(part * s for s in scales))
         motion = integrate(
             self._modes(start.w1),
-            (self._mode_of(start.phi1, start.lag), (0.0, 0.0, start.lag, start.slip, 0.0, 0.0, 0.0)),
+            (
+                self._mode_of(start.phi1, start.lag),
+                (0.0, 0.0, start.lag, start.slip, 0.0, 0.0, 0.0),
+            ),
             self._knots(knots, start.phi1, end),
             keep=start.phi1 if keep is None else keep,
             passed=passed,
@@ -483,12 +502,13 @@ class StiffRun(ShortRepr):
         phi1 = np.asarray(phi1, dtype=float)
         pair = self.pair
         t, w1, lag, slip = self.states(phi1)[:4]
-        ratio, _, stiffness, _, play, _, *rubs = pair.table.at(phi1)
+        ratio, _, stiffness, _, play, play_slope, *rubs = pair.table.at(phi1)
         modes = self.motion.modes(phi1)
         sign = np.array([{DRIVE: 1.0, COAST: -1.0}.get(one, 0.0) for one in modes])
         touch = np.array([one in (DRIVE, COAST, MESH) for one in modes])
         bent = np.where(touch, lag - 0.5 * sign * play, 0.0)
-        mesh = np.where(touch, stiffness * bent + pair.damping * slip, 0.0)
+        closing = slip - 0.5 * sign * play_slope * w1
+        mesh = np.where(touch, stiffness * bent + pair.damping * closing, 0.0)
         kappa = np.where(mesh < 0.0, rubs[1], rubs[0]) if rubs else ratio
         w2 = ratio * w1 - slip
         return {
@@ -501,5 +521,7 @@ class StiffRun(ShortRepr):
             "mesh": mesh,
             "driver": kappa * mesh,
             "motor": np.array([pair.motor(one) for one in w1.tolist()]),
-            "load": np.array([pair.load(*one) for one in zip(phi1.tolist(), w2.tolist(), strict=True)]),
+            "load": np.array(
+                [pair.load(*one) for one in zip(phi1.tolist(), w2.tolist(), strict=True)]
+            ),
         }

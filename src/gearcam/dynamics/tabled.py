@@ -60,6 +60,7 @@ class Tabled(ShortRepr):
         count = len(functions(knots[:1]))
         edges = knots
         for number in range(count):  # each may need finer cells than those before
+
             def one(x: Array, number: int = number) -> Array:
                 return functions(x)[number]
 
@@ -91,7 +92,9 @@ class Tabled(ShortRepr):
         t = (x - middle) * scale
         found = []
         for a, b, c, d, e, f, g, h, i in powers:
-            found.append((((((((a * t + b) * t + c) * t + d) * t + e) * t + f) * t + g) * t + h) * t + i)
+            found.append(
+                (((((((a * t + b) * t + c) * t + d) * t + e) * t + f) * t + g) * t + h) * t + i
+            )
         return found
 
     def at(self, x: ArrayLike) -> Array:
