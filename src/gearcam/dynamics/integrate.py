@@ -235,6 +235,7 @@ class Integrator(ShortRepr):
         y = np.asarray(state, dtype=float)
         run = _Run(self, modes, keep)
         place = float(knots[0])
+        run.begin(mode, place, y)
         for high in map(float, knots[1:]):
             place, mode, y = run.stretch(mode, y, place, high)
             if mode not in modes:
@@ -276,14 +277,14 @@ class _Run:
                     what = f"{_MOST} switches between {mode} and {after} up to {x:.6g} rad"
                     raise InfeasibleError(what, where="dynamics", nearest="more damping")
                 mode = after
-                self._begin(mode, x, y)
+                self.begin(mode, x, y)
         return x, mode, y
 
-    def _begin(self, name: str, x: float, y: Array) -> None:
+    def begin(self, name: str, x: float, y: Array) -> None:
         """Begin a mode that may be much faster than the one before with a short step."""
         mode = self._modes.get(name)
-        if mode and mode.pace and self._width:
-            self._width = min(self._width, 1.0 / mode.pace(x, y))
+        if mode and mode.pace:
+            self._width = min(self._width or np.inf, 1.0 / mode.pace(x, y))
 
     def _smooth(
         self, name: str, y: Array, x: float, end: float, inner: tuple[float, float]
