@@ -2,12 +2,12 @@
 
 DOP853 follows vibrations with least work. Once they have died away it is still bound to steps of
 about a natural period, beyond which it is not stable; implicit formulas then take steps as long as
-what happens allows. So DOP853 goes on until its steps are as long as stability allows; then LSODA is
-tried, and goes on while it costs less for the way that it makes. A trial that fails is repeated
+what happens allows. So DOP853 goes on until its steps are as long as stability allows; then LSODA
+is tried, and goes on while it costs less for the way that it makes. A trial that fails is repeated
 after twice as many steps, so that all trials together cost little.
 
-Radau would be as fast for a loose tolerance, and takes two to three times as long for 1e-6: measured
-by ``gearcam accuracy``.
+Radau in its place would be as fast for a loose tolerance, but takes two to three times as long for
+a tolerance of 1e-6 (see `trials`).
 
 Work is counted in evaluations with fixed weights, not in seconds: the same on every machine.
 """

@@ -2,9 +2,10 @@
 
 A *mode* is a form of the equations of motion that holds while some functions of the state are not
 negative: teeth in contact, in play, a follower in flight. Where one of these functions becomes
-negative the motion *switches* to another mode. Integration starts anew at each knot and each switch,
-so that no step crosses one; a step that ends beyond a switch is cut there, by a root of its dense
-output. The switch happens a hair beyond the limit, so that the next mode begins within its own.
+negative the motion *switches* to another mode. Integration starts anew at each knot and each
+switch, so that no step crosses one; a step that ends beyond a switch is cut there, by a root of its
+dense output. The switch happens a hair beyond the limit, so that the next mode begins within its
+own.
 
 The steps are those of scipy's integrators. Which of them, `auto` decides as it goes (see `choice`).
 """
@@ -426,12 +427,5 @@ def _root(function: Callable[[float], float], low: float, high: float) -> float:
 
     if function(low) <= 0.0:  # it begins to fall at once
         return high
-    found, _ = brentq(
-        function,
-        low,
-        high,
-        xtol=4e-16 * max(abs(low), abs(high), 1e-300),
-        rtol=8.9e-16,
-        full_output=True,
-    )
+    found = brentq(function, low, high, xtol=4e-16 * max(abs(low), abs(high), 1e-300))
     return float(found)

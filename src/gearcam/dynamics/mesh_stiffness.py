@@ -1,9 +1,12 @@
 """Stiffness and play of a mesh over the driver's angle, as smooth functions.
 
-Where pairs of teeth come and go, the sum of ``k*a^2`` over the pairs that touch, with levers a about
-the driven shaft, jumps. Under load it does not: a pair whose flanks are still a gap apart carries as
-soon as the driven wheel lags by its *touch angle* ``tau = gap/a``, so that ``Q(e) = sum k*a^2*max(0,
-e - tau)``. The stiffness at a nominal load is Q/e where Q is that load.
+Where pairs of teeth come and go, the sum of ``k*a^2`` over the pairs that touch, with levers a
+about the driven shaft, jumps. Under load it does not: a pair whose flanks are still a gap apart
+carries as soon as the driven wheel lags by its *touch angle* ``tau = gap/a``::
+
+    Q(e) = sum of k*a^2*max(0, e - tau)
+
+The stiffness at a nominal load is Q/e where Q is that load.
 """
 
 from __future__ import annotations
@@ -27,7 +30,8 @@ from gearcam.numeric.arrays import Array, Ints
 _NEAR: Final = 0.05
 """Largest gap at which edges are looked for at first, in pitches: doubled while the lag is more."""
 
-_DOUBLINGS: Final = 5
+_FAR: Final = 1.0
+"""Gap, in pitches, beyond which they are not."""
 
 _KILO: Final = 1e3
 """N mm in a N m, and micrometres in a mm."""
@@ -149,24 +153,24 @@ def mesh_stiffness(
     InfeasibleError
         If no teeth touch at a phase.
     """
-    load = np.broadcast_to(np.asarray(load, dtype=float) * _KILO, phi1.shape)
-    found, near = contacts(pairs, phi1), _NEAR * pairs.pitch
-    for _ in range(_DOUBLINGS):
+    torque = np.asarray(np.broadcast_to(load, phi1.shape), dtype=float) * _KILO
+    found, own = contacts(pairs, phi1), stiffness * width * _KILO
+    near, closed = 0.5 * _NEAR * pairs.pitch, np.inf
+    made = np.zeros(phi1.shape)
+    while closed > near and near < _FAR * pairs.pitch:
+        near *= 2.0
         about = about_to_touch(pairs, phi1, found, near)
         step = np.concatenate([found.step, about.step])
-        lever = np.concatenate([found.lever[1], about.lever])
-        gap = np.concatenate([np.zeros(len(found.step)), about.gap])
         order = np.argsort(step, kind="stable")
-        made, lag = secant_stiffness(
-            step[order], lever[order], gap[order], stiffness * width * _KILO, load
-        )
+        step = step[order]
+        lever = np.concatenate([found.lever[1], about.lever])[order]
+        gap = np.concatenate([np.zeros(len(found.step)), about.gap])[order]
+        made, lag = secant_stiffness(step, lever, gap, own, torque)
         alone = np.flatnonzero(~np.isfinite(lag))
         if alone.size:
             where = angle_text(float(phi1[alone[0]]))
             raise InfeasibleError("no teeth touch: the mesh has no stiffness", where=where)
-        if float((lag[step] * lever).max()) < near:
-            break
-        near *= 2.0
+        closed = float((lag[step] * lever).max())
     return made / _KILO
 
 

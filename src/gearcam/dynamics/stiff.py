@@ -27,6 +27,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -55,7 +56,7 @@ _OF_STEP: Final = 0.05
 times the tolerance of the play."""
 
 _PILOT: Final = 300.0
-"""Natural periods of the stretch from which the run time is foretold, a quarter of a turn at most."""
+"""Natural periods of the stretch from which the run time is foretold; a quarter turn at most."""
 
 MOST_PERIODS: Final = 1e7
 """Largest number of natural periods of a run."""
@@ -424,9 +425,9 @@ class StiffRun(ShortRepr):
         phi1 = np.asarray(phi1, dtype=float)
         return self._with_even(phi1, self.motion.at(phi1))
 
-    def _with_even(self, phi1: ArrayLike, states: Array) -> Array:
+    def _with_even(self, phi1: Array | float, states: Array) -> Array:
         made = states.copy()
-        made[0] += (phi1 - np.float64(self.start.phi1)) / self.start.w1
+        made[0] += (phi1 - self.start.phi1) / self.start.w1
         made[1] += self.start.w1
         return made
 
@@ -478,7 +479,7 @@ class StiffRun(ShortRepr):
         ends += [one for one in motion.switches if one[0] > first]
         ends.append((motion.place, motion.mode, ""))
         arcs = []
-        for (low, _, mode), (high, _, onto) in zip(ends[:-1], ends[1:], strict=True):
+        for (low, _, mode), (high, _, onto) in pairwise(ends):
             if mode == PLAY:
                 arcs.append(Arc(low, high, onto, self._impact(high, onto)))
         return arcs

@@ -16,8 +16,7 @@ from numpy.typing import ArrayLike
 
 from gearcam.base.display import ShortRepr
 from gearcam.numeric.arrays import Array
-from gearcam.numeric.chebyshev import Expansion, expand
-
+from gearcam.numeric.chebyshev import expand
 
 _ANY: Final = 1e100
 """A tolerance that all functions meet; 0 too, unlike infinity."""
@@ -71,7 +70,7 @@ class Tabled(ShortRepr):
 
     @cached_property
     def _cells(self) -> tuple[list[float], list[tuple[float, float, list[tuple[float, ...]]]]]:
-        """Inner edges, and of each cell its middle, inverse half width, and powers, highest first."""
+        """Inner edges, and of each cell its middle, inverse half width, powers, highest first."""
         parts = [column.powers for column in self._columns]
         middles, scales, _ = parts[0]
         powers = np.array([one[2][::-1] for one in parts])

@@ -1,8 +1,8 @@
 """Machines on which methods of integration are compared: error against run time.
 
 Four that differ in what they ask of a method: a vibration without damping (50 periods), teeth that
-rattle in their play (20 impacts), a machine with a changing ratio and stiffness over 60 degrees, and
-the same turning so slowly that its vibrations die away (about a thousand periods).
+rattle in their play (20 impacts), a machine with a changing ratio and stiffness over 60 degrees,
+and the same turning so slowly that its vibrations die away (about a thousand periods).
 """
 
 from __future__ import annotations

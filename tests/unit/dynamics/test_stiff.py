@@ -3,6 +3,8 @@
 import math
 import random
 from collections.abc import Callable
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -119,7 +121,7 @@ def test_the_error_in_play_falls_with_the_tolerance():
     for rtol in (1e-5, 1e-6, 1e-7, 1e-8):
         time, _, lag, _ = rattling(20, rtol=rtol).end[:4]
         errors.append(abs(lag - in_play(time)))
-    assert max(b / a for a, b in zip(errors[:-1], errors[1:], strict=True)) < 0.2
+    assert max(b / a for a, b in pairwise(errors)) < 0.2
 
 
 def test_without_switches_the_same_integrator_is_ten_times_worse():
@@ -218,7 +220,7 @@ def test_the_speed_tends_to_that_of_rigid_teeth_with_order_one():
     def rigid(x: np.ndarray) -> np.ndarray:
         from scipy.integrate import solve_ivp
 
-        def inertia(x: np.ndarray) -> np.ndarray:
+        def inertia(x: Any) -> Any:
             return J1 + J2 * (1.0 + 0.4 * np.cos(x)) ** 2
 
         def rate(x: float, energy: np.ndarray) -> np.ndarray:
@@ -262,6 +264,7 @@ def test_a_machine_that_is_too_weak_stalls_where_its_energy_is_spent():
     load = 50.0
     made = even(PLAYED, motor=lambda _: 10.0, load=lambda *_: load, damping=200.0)
     run = made.run(made.resting(0.0, W), TURN)
+    assert run.stalled is not None
     place, lacks = run.stalled
     assert place == pytest.approx((J1 + J2) * W**2 / 2.0 / (load - 10.0), rel=1e-4)
     assert lacks == pytest.approx(load - 10.0)
@@ -320,9 +323,10 @@ def test_the_jacobian_is_that_of_differences(sign):
         load=lambda x, w: 3.0 * w * w + math.sin(x),
     )
     names = {0.0: "mesh", 1.0: DRIVE, -1.0: COAST}
-    mode = made._modes(W)[names[sign]]  # noqa: SLF001
+    mode = made._modes(W)[names[sign]]
     y = np.array([0.1, 1.0, (sign or 1.0) * 3.0 * PLAYED, 0.4, 1.0, 2.0, 3.0])
     scale = np.array([1.0, 1.0, 1e-4, 1.0, 1.0, 1.0, 1.0])
+    assert mode.jacobian is not None
     found = np.array(mode.jacobian(0.3, y))
     for column, size in enumerate(scale):
         more, less = y.copy(), y.copy()

@@ -88,7 +88,7 @@ def test_under_load_stiffness_does_not_jump() -> None:
 
 
 def test_a_mesh_that_does_not_touch_is_refused() -> None:
-    text = PAIR.format(eccentricity=0.0, backlash=0.0) + "rack = { addendum = 0.4 }\n"
+    text = PAIR.format(eccentricity=0.0, backlash=0.0) + "rack = { addendum = 0.1 }\n"
     drive = gearcam.build(gearcam.loads(text)).subject.sides[1]
     with pytest.raises(InfeasibleError, match="no teeth touch"):
         mesh_stiffness(drive, np.linspace(0.0, 1.0, 100), 14.0, 10.0, 100.0)
@@ -112,7 +112,7 @@ def test_the_play_of_other_wheels_has_the_levers_of_both_normals(backlash: float
         closed += 0.5 * backlash * math.cos(ALPHA) / lever
     found = play(both, phi1)
     assert found == pytest.approx(closed, rel=0.01 * backlash)
-    # not the backlash over the radius: the pitch curves are not perpendicular to the line of centres
+    # not the backlash over the radius: pitch curves lie askew to the line of centres
     of_radius = found * distance / (1.0 + result.law.ratio(phi1)) / backlash
     assert of_radius.min() == pytest.approx(1.0, abs=1e-3)
     assert of_radius.max() > 1.2
