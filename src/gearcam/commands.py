@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 from gearcam import build, remedies
 from gearcam.base.errors import DesignError, InfeasibleError, MissingExtraError, Problem, WriteError
-from gearcam.base.quantities import FILE_KEYS
+from gearcam.base.quantities import FILE_KEYS, unit_of
 from gearcam.console import (
     DEBUG,
     all_lines,
@@ -146,6 +146,10 @@ def _add_settings(study: Study, kind: Kind, parser: argparse.ArgumentParser) -> 
         plain = key.removesuffix(entry.param.quantity.suffix).replace("_", "-")
         name = study.options.get(key, plain)
         parser.add_argument(f"--{name}", dest=key, **words)
+    for name, key in study.elsewhere.items():
+        unit = unit_of(key).upper()
+        words = {"type": float, "metavar": unit, "help": f"another {key}"}
+        parser.add_argument(f"--{name}", dest=f"--{name}", **words)
 
 
 def _list(base: type, text: str, *, both: bool) -> Any:
@@ -186,7 +190,9 @@ def studied(study: Study, design: Design, options: Options) -> Any:
         message = f"this command is for designs of {' or '.join(map(as_written, kinds))}"
         message += f", not for {own}" if " with " in own else ""
         raise DesignError([Problem(message, file=design.source, key="kind", value=design.kind)])
-    settings = {f"{study.table}.{key}": one for key, one in options.items() if one is not None}
+    own = known[study.name].elsewhere
+    given = {key: one for key, one in options.items() if one is not None}
+    settings = {own.get(key[2:], f"{study.table}.{key}"): one for key, one in given.items()}
     changed = design.with_(settings) if settings else design
     known[study.name].demand(changed)
     return changed

@@ -35,7 +35,7 @@ _WEIGHT: Final = 1.8
 """Time of an evaluation in LSODA, with all that belongs to it, over that in DOP853."""
 
 
-class Choice:
+class MethodChoice:
     """The method in use, and when it changes."""
 
     def __init__(self) -> None:

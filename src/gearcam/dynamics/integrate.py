@@ -1,7 +1,7 @@
 """Integration of motions that are smooth between knots and switches.
 
 A *mode* is a form of the equations of motion that holds while some functions of the state are not
-negative: teeth in contact, in play, a follower in flight. Where one of these functions becomes
+negative: teeth in contact or apart, a follower in flight. Where one of these functions becomes
 negative the motion *switches* to another mode. Integration starts anew at each knot and each
 switch, so that no step crosses one; a step that ends beyond a switch is cut there, by a root of its
 dense output. The switch happens a hair beyond the limit, so that the next mode begins within its
@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import InfeasibleError
-from gearcam.dynamics.choice import Choice
+from gearcam.dynamics.choice import MethodChoice
 from gearcam.numeric.arrays import Array
 
 METHODS: Final = ("auto", "radau", "bdf", "lsoda", "dop853")
@@ -40,6 +40,9 @@ _SLIGHTLY: Final = 1e-6
 
 _NEAR: Final = 1e-2
 """Largest part of a step by which a switch is corrected."""
+
+_ROUNDING: Final = 1e-12
+"""Rounding of a place."""
 
 _ROUNDINGS: Final = 8.0
 """Rounding of a knot, over that of the number: knots are repeated with the turn."""
@@ -64,14 +67,17 @@ class Switch(NamedTuple):
     holds : callable
         ``holds(x, y)`` is not negative while the mode goes on.
     to : str
-        Name of the mode that follows; the motion ends there if there is no such mode.
+        Name of the mode that follows.
     hair : float
         How far below 0 it falls before the switch: rounding of the function.
+    dips : bool
+        Whether it may fall below 0 and come back within a step.
     """
 
     holds: Callable[[float, Any], float]
     to: str
     hair: float
+    dips: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,15 +95,18 @@ class Mode(ShortRepr):
     pace : callable or None
         ``pace(x, y)``: size of the largest eigenvalue, a natural frequency in most cases, per unit
         of x; None if nothing is stiff.
+    last : bool
+        Whether the motion ends where it begins.
     """
 
     rate: Rate
     switches: tuple[Switch, ...] = ()
     jacobian: Callable[[float, Any], Sequence[Sequence[float]]] | None = None
     pace: Callable[[float, Any], float] | None = None
+    last: bool = False
 
 
-class Piece(NamedTuple):
+class MotionPiece(NamedTuple):
     """A step of a motion.
 
     Attributes
@@ -128,7 +137,7 @@ class Motion(ShortRepr):
         The state there.
     mode : str
         The mode there.
-    pieces : list of Piece
+    pieces : list of MotionPiece
         Its last steps, from where on they were kept.
     switches : list of (float, str, str)
         Place of each switch, and the modes before and after it.
@@ -139,7 +148,7 @@ class Motion(ShortRepr):
     place: float
     end: Array
     mode: str
-    pieces: list[Piece] = field(repr=False)
+    pieces: list[MotionPiece] = field(repr=False)
     switches: list[tuple[float, str, str]] = field(repr=False)
     evaluations: int
     steps: int
@@ -153,7 +162,8 @@ class Motion(ShortRepr):
             If a place is not among them.
         """
         x = np.asarray(x, dtype=float)
-        if x.size and not self.pieces[0].low <= x.min() <= x.max() <= self.place:
+        near = _ROUNDING * max(1.0, abs(self.place))
+        if x.size and not self.pieces[0].low - near <= x.min() <= x.max() <= self.place + near:
             raise ValueError(f"kept from {self.pieces[0].low} to {self.place} only")
         number = self._number(x)
         found = np.empty((len(self.end), x.size))
@@ -239,7 +249,7 @@ class Integrator(ShortRepr):
         run.begin(mode, place, y)
         for high in map(float, knots[1:]):
             place, mode, y = run.stretch(mode, y, place, high)
-            if mode not in modes:
+            if modes[mode].last:
                 break
             passed(high)
         return Motion(
@@ -260,9 +270,9 @@ class _Run:
         from scipy import integrate
 
         self._made = {name: getattr(integrate, one) for name, one in _CLASSES.items()}
-        self._choice = Choice() if integrator.method == "auto" else None
+        self._choice = MethodChoice() if integrator.method == "auto" else None
         self._integrator, self._modes, self._keep = integrator, modes, keep
-        self.pieces: list[Piece] = []
+        self.pieces: list[MotionPiece] = []
         self.switches: list[tuple[float, str, str]] = []
         self.evaluations = self.steps = 0
         self._width: float | None = None
@@ -270,7 +280,7 @@ class _Run:
     def stretch(self, mode: str, y: Array, low: float, high: float) -> tuple[float, str, Array]:
         """Return place, mode and state at the end of a stretch between knots."""
         x, inner = low, _inner(low, high)
-        while x < high and mode in self._modes:
+        while x < high and not self._modes[mode].last:
             x, y, after = self._smooth(mode, y, x, high, inner)
             if after != mode:
                 self.switches.append((x, mode, after))
@@ -283,8 +293,8 @@ class _Run:
 
     def begin(self, name: str, x: float, y: Array) -> None:
         """Begin a mode that may be much faster than the one before with a short step."""
-        mode = self._modes.get(name)
-        if mode and mode.pace:
+        mode = self._modes[name]
+        if mode.pace:
             self._width = min(self._width or np.inf, 1.0 / mode.pace(x, y))
 
     def _smooth(
@@ -311,7 +321,7 @@ class _Run:
                 longest = max(float(solver.step_size), 0.5 * longest)
         finally:
             self.evaluations += solver.nfev
-            self._width = max(longest, float(solver.step_size or 0.0)) or self._width
+            self._width = 0.5 * max(longest, float(solver.step_size or 0.0)) or self._width
         return end, solver.y, name
 
     def _solver(self, mode: Mode, x: float, y: Array, end: float) -> Any:
@@ -328,7 +338,7 @@ class _Run:
         """Keep the last step; return where it switches, the state there and the next mode."""
         low, high = float(solver.t_old), float(solver.t)
         wanted = high >= self._keep
-        likely = [one for one in mode.switches if not _holds_throughout(one, solver)]
+        likely = [one for one in mode.switches if _may_end(one, solver)]
         if not likely and not wanted:
             return None
         at = solver.dense_output()
@@ -338,7 +348,7 @@ class _Run:
             if place is not None and (first is None or place < first[0]):
                 first = place, switch
         if (first[0] if first else high) >= self._keep:
-            self.pieces.append(Piece(low, first[0] if first else high, name, at))
+            self.pieces.append(MotionPiece(low, first[0] if first else high, name, at))
         if first is None:
             return None
         if not hasattr(solver, "K"):
@@ -386,13 +396,16 @@ def _within(mode: Mode, low: float, high: float) -> Mode:
     return replace(mode, rate=rate)
 
 
-def _holds_throughout(switch: Switch, solver: Any) -> bool:
-    """Return whether a mode is far from its end in a step, by the cubic over it.
+def _may_end(switch: Switch, solver: Any) -> bool:
+    """Return whether a mode may end in the last step.
 
-    Only where it is known without a dense output, which costs DOP853 a quarter more.
+    Of DOP853, whose dense output costs a quarter of a step, by the cubic over the step: not if the
+    function changes by less than its least value.
     """
+    if not switch.dips:
+        return switch.holds(float(solver.t), solver.y) < -switch.hair
     if not hasattr(solver, "K"):
-        return False
+        return True
     low, width = solver.t_old, solver.t - solver.t_old
     ends = (solver.y_old, width * solver.K[0], solver.y, width * solver.f)
     states = _HERMITE @ np.array(ends)
@@ -401,7 +414,7 @@ def _holds_throughout(switch: Switch, solver: Any) -> bool:
         for share, state in zip((0.0, *_BETWEEN, 1.0), states.tolist(), strict=True)
     ]
     least = min(values)
-    return least > max(values) - least
+    return least <= max(values) - least
 
 
 def _crossing(
@@ -427,5 +440,12 @@ def _root(function: Callable[[float], float], low: float, high: float) -> float:
 
     if function(low) <= 0.0:  # it begins to fall at once
         return high
-    found = brentq(function, low, high, xtol=4e-16 * max(abs(low), abs(high), 1e-300))
+    found, _ = brentq(
+        function,
+        low,
+        high,
+        xtol=4e-16 * max(abs(low), abs(high), 1e-300),
+        rtol=8.9e-16,
+        full_output=True,
+    )
     return float(found)

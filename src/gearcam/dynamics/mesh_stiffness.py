@@ -1,4 +1,4 @@
-"""Stiffness and play of a mesh over the driver's angle, as smooth functions.
+"""Stiffness and backlash of a mesh over the driver's angle, as smooth functions.
 
 Where pairs of teeth come and go, the sum of ``k*a^2`` over the pairs that touch, with levers a
 about the driven shaft, jumps. Under load it does not: a pair whose flanks are still a gap apart
@@ -65,7 +65,15 @@ class Smooth(ShortRepr):
         return np.asarray(self._spline.x, dtype=float)
 
     def __call__(self, x: ArrayLike, order: int = 0) -> Array:
-        """Return the values at `x`, or those of a derivative."""
+        """Return the values at `x`, or those of a derivative.
+
+        Parameters
+        ----------
+        x : (n,) array
+            Places.
+        order : int
+            Of the derivative, 0 for the function.
+        """
         x = np.asarray(x, dtype=float)
         return np.asarray(self._spline(x, order), dtype=float)
 
@@ -174,7 +182,7 @@ def mesh_stiffness(
     return made / _KILO
 
 
-def play(sides: Sequence[FlankPairs], phi1: Array) -> Array:
+def backlash_angle(sides: Sequence[FlankPairs], phi1: Array) -> Array:
     """Return the angle, rad, that the driven wheel turns between its flanks, (n,).
 
     Parameters

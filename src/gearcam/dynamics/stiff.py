@@ -1,11 +1,11 @@
-"""The stiff model of a pair: rigid wheels, teeth as a spring with a damper, and play between them.
+"""The stiff model of a pair: rigid wheels, teeth as a spring with a damper, and backlash.
 
-The driven wheel *lags* by ``e = Phi(phi1) - phi2`` behind its nominal place. With the play b, an
-angle of the driven wheel, the teeth are bent by ``g = e - s*b/2`` on their driving flanks (s = 1,
-e > b/2) or coast flanks (s = -1, e < -b/2); between these they are in play. The stiffness K and the
-play change with the driver's angle. Lagrange's equations with ``w2 = i*w1 - e'`` are::
+The driven wheel *lags* by ``e = Phi(phi1) - phi2`` behind its nominal place. With the backlash b,
+an angle of the driven wheel, the teeth are bent by ``g = e - s*b/2`` on their driving flanks (s =
+1, e > b/2) or coast flanks (s = -1, e < -b/2); between these they are apart. The stiffness K and
+the backlash change with the driver's angle. Lagrange's equations with ``w2 = i*w1 - e'`` are::
 
-    J2*a2 = Q - M2                                   Q = K*g + c*g', 0 in play
+    J2*a2 = Q - M2                                   Q = K*g + c*g', 0 apart
     J1*a1 = M1 - (kappa - s*b'/2)*Q - K'*g^2/2       g' = e' - s*b'*w1/2
     e''   = i*a1 + i'*w1^2 - a2
 
@@ -40,7 +40,7 @@ from gearcam.dynamics.tabled import Tabled
 from gearcam.numeric.arrays import Array
 
 _HAIR: Final = 1e-9
-"""How far beyond its limit a contact ends or begins, over the play."""
+"""How far beyond its limit a contact ends or begins, over the backlash."""
 
 _STALLED: Final = 1e-4
 """Speed at which the machine stalls, over that at the start."""
@@ -52,8 +52,8 @@ _PLACES: Final = 512
 """Places of a turn at which scales and frequencies are found."""
 
 _OF_STEP: Final = 0.05
-"""Tolerance of a step over that of the run: twenty impacts in play then leave the lag right to five
-times the tolerance of the play."""
+"""Tolerance of a step over that of the run: twenty impacts then leave the lag right to five
+times the tolerance of the backlash."""
 
 _PILOT: Final = 300.0
 """Natural periods of the stretch from which the run time is foretold; a quarter turn at most."""
@@ -61,8 +61,8 @@ _PILOT: Final = 300.0
 MOST_PERIODS: Final = 1e7
 """Largest number of natural periods of a run."""
 
-DRIVE, PLAY, COAST, MESH, STALL = "drive", "play", "coast", "mesh", "stalled"
-"""Modes: teeth on their driving flanks, in play, on coast flanks; without any play; at rest."""
+DRIVE, APART, COAST, MESH, STALL = "drive", "apart", "coast", "mesh", "stalled"
+"""Modes: teeth on their driving flanks, apart, on coast flanks; without any backlash; at rest."""
 
 
 class StiffState(NamedTuple):
@@ -96,7 +96,7 @@ class StiffPair(ShortRepr):
     damping : float, N m s/rad
         c.
     motor : callable
-        ``motor(w1)``: torque on the driver, N m.
+        ``motor(phi1, w1)``: torque on the driver, N m; also of speeds that are not reached.
     load : callable
         ``load(phi1, w2)``: torque against the driven shaft's motion, N m.
     """
@@ -104,7 +104,7 @@ class StiffPair(ShortRepr):
     table: Tabled
     inertia: tuple[float, float]
     damping: float
-    motor: Callable[[float], float]
+    motor: Callable[[float, float], float]
     load: Callable[[float, float], float]
 
     @cached_property
@@ -120,39 +120,62 @@ class StiffPair(ShortRepr):
         return np.sqrt(stiffness * (1.0 / j2 + ratio**2 / j1))
 
     def rigid_torque(self, phi1: float, w1: float) -> float:
-        """Return the torque of the mesh on the driven wheel, N m, if teeth were rigid."""
+        """Return the torque of the mesh on the driven wheel, N m, if teeth were rigid.
+
+        Parameters
+        ----------
+        phi1, w1 : float, rad and rad/s
+            Angle and speed of the driver.
+        """
         ratio, slope = self.table(phi1)[:2]
         j1, j2 = self.inertia
         load = self.load(phi1, ratio * w1)
         inert = j2 * slope * w1 * w1
-        a1 = (self.motor(w1) - ratio * (load + inert)) / (j1 + j2 * ratio * ratio)
+        a1 = (self.motor(phi1, w1) - ratio * (load + inert)) / (j1 + j2 * ratio * ratio)
         return load + j2 * ratio * a1 + inert
 
     def resting(self, phi1: float, w1: float, torque: float | None = None) -> StiffState:
         """Return the start in which the teeth carry a torque, N m, and do not slip.
 
-        By default the torque is that of rigid teeth there.
+        Parameters
+        ----------
+        phi1, w1 : float, rad and rad/s
+            Angle and speed of the driver.
+        torque : float, N m
+            On the driven wheel; by default that of rigid teeth.
+
+        Returns
+        -------
+        StiffState
         """
         if torque is None:
             torque = self.rigid_torque(phi1, w1)
-        _, _, stiffness, _, play = self.table(phi1)[:5]
-        return StiffState(phi1, w1, torque / stiffness + math.copysign(0.5 * play, torque))
+        _, _, stiffness, _, backlash = self.table(phi1)[:5]
+        return StiffState(phi1, w1, torque / stiffness + math.copysign(0.5 * backlash, torque))
 
     @cached_property
-    def _has_play(self) -> bool:
+    def _parted(self) -> bool:
         return bool((self.table.at(self.places)[4] > 0.0).any())
 
     def _mode_of(self, phi1: float, lag: float) -> str:
-        if not self._has_play:
+        if not self._parted:
             return MESH
         half = 0.5 * self.table(phi1)[4]
-        return PLAY if abs(lag) <= half else DRIVE if lag > 0.0 else COAST
+        return APART if abs(lag) <= half else DRIVE if lag > 0.0 else COAST
 
     def energy(self, phi1: float, state: ArrayLike) -> float:
-        """Return kinetic and potential energy, J, of a state."""
+        """Return kinetic and potential energy, J.
+
+        Parameters
+        ----------
+        phi1 : float, rad
+            Driver angle.
+        state : (4 or more,) array
+            Time, w1, e and e'.
+        """
         _, w1, lag, slip = np.asarray(state, dtype=float)[:4].tolist()
-        ratio, _, stiffness, _, play = self.table(phi1)[:5]
-        bent = max(abs(lag) - 0.5 * play, 0.0)
+        ratio, _, stiffness, _, backlash = self.table(phi1)[:5]
+        bent = max(abs(lag) - 0.5 * backlash, 0.0)
         j1, j2 = self.inertia
         return 0.5 * (j1 * w1 * w1 + j2 * (ratio * w1 - slip) ** 2 + stiffness * bent * bent)
 
@@ -160,24 +183,23 @@ class StiffPair(ShortRepr):
         """Return the modes of a run that begins with a speed, rad/s."""
         table, floor = self.table, _STALLED * speed
         hair = _HAIR * float(table.at(self.places)[4].max())
-        stall = Switch(lambda _, y: y[1] + speed - floor, STALL, 0.0)
+        stall = Switch(lambda _, y: y[1] + speed - floor, STALL, 0.0, dips=False)
+        last = {STALL: Mode(lambda *_: [0.0] * 7, last=True)}
 
-        def beyond(sign: float, of: float, to: str) -> Switch:
-            """Return the switch at one end of the play: `of` is 1 for contact, -1 for play."""
+        def side(sign: float, of: float, to: str) -> Switch:
+            """Return the switch at a flank: `of` is 1 for teeth that touch, -1 for teeth apart."""
 
             def holds(x: float, y: Any) -> float:
                 return of * (sign * float(y[2]) - 0.5 * table(x)[4])
 
             return Switch(holds, to, hair)
 
-        if not self._has_play:
-            return {MESH: self._mode(0.0, True, speed, (stall,))}
-        touching = {DRIVE: 1.0, COAST: -1.0}
-        ends = tuple(beyond(sign, -1.0, name) for name, sign in touching.items())
-        modes = {PLAY: self._mode(0.0, False, speed, (*ends, stall))}
-        for name, sign in touching.items():
-            modes[name] = self._mode(sign, True, speed, (beyond(sign, 1.0, PLAY), stall))
-        return modes
+        if not self._parted:
+            return {MESH: self._mode(0.0, True, speed, (stall,)), **last}
+        drive = self._mode(1.0, True, speed, (side(1.0, 1.0, APART), stall))
+        coast = self._mode(-1.0, True, speed, (side(-1.0, 1.0, APART), stall))
+        either = side(1.0, -1.0, DRIVE), side(-1.0, -1.0, COAST), stall
+        return {DRIVE: drive, COAST: coast, APART: self._mode(0.0, False, speed, either), **last}
 
     def _mode(self, sign: float, touches: bool, speed: float, switches: Any) -> Mode:
         """Return the equations of a mode; `speed` is that of the start."""
@@ -193,7 +215,7 @@ class StiffPair(ShortRepr):
             closing = v - moved * w
             q = k * g + c * closing
             lost = (rubs[1 if q < 0.0 else 0] - i) * q if rubs else 0.0
-            m1, w2 = motor(w), i * w - v
+            m1, w2 = motor(x, w), i * w - v
             m2 = load(x, w2)
             a1 = (m1 - (i - moved) * q - lost - 0.5 * dk * g * g) / j1
             slip = i * a1 + di * w * w - (q - m2) / j2
@@ -205,7 +227,7 @@ class StiffPair(ShortRepr):
             _, w, _, v, _, _, _ = y.tolist()
             w = max(w + speed, floor)
             i, di = table(x)[:2]
-            m1, w2 = motor(w), i * w - v
+            m1, w2 = motor(x, w), i * w - v
             m2 = load(x, w2)
             a1 = m1 / j1
             r = 1.0 / w
@@ -228,7 +250,7 @@ class StiffPair(ShortRepr):
             closing = v - moved * w
             kappa = rubs[1 if k * g + c * closing < 0.0 else 0] if rubs else i
             step = _DIFFERENCE * w
-            dm1 = (motor(w + step) - motor(w)) / step
+            dm1 = (motor(x, w + step) - motor(x, w)) / step
             m2 = load(x, w2)
             dm2 = (load(x, w2 + step) - m2) / step
             # columns w1, e, e'; the time and works do not act back
@@ -259,7 +281,7 @@ class StiffPair(ShortRepr):
             i, _, k = table(x)[:3]
             softness = 1.0 / j2 + i * i / j1
             step = _DIFFERENCE * w
-            by_motor = abs(motor(w + step) - motor(w)) / (step * j1)
+            by_motor = abs(motor(x, w + step) - motor(x, w)) / (step * j1)
             by_load = abs(load(x, i * w + step) - load(x, i * w)) / (step * j2)
             return max(math.sqrt(k * softness), c * softness, by_motor, by_load) / w
 
@@ -269,17 +291,23 @@ class StiffPair(ShortRepr):
 
     def _scales(self, start: StiffState) -> tuple[float, ...]:
         """Return sizes of the parts of the state: below them, tolerances are absolute."""
-        stiffness, play = self.table.at(self.places)[[2, 4]]
+        stiffness, backlash = self.table.at(self.places)[[2, 4]]
         torque = max(abs(self.rigid_torque(x, start.w1)) for x in self.places.tolist())
         pace = float(self.frequency(self.places).max())
-        half = 0.5 * float(play.max())
+        half = 0.5 * float(backlash.max())
         lag = max(half + torque / float(stiffness.min()), abs(start.lag), abs(start.slip) / pace)
         lag = lag or start.w1 / pace  # nothing acts
         energy = self.energy(start.phi1, (0.0, start.w1, start.lag, start.slip))
         return (1.0 / pace, lag * pace, lag, lag * pace, *3 * (energy,))
 
     def periods(self, start: StiffState, end: float) -> float:
-        """Return the number of natural periods up to a driver angle at the speed of the start."""
+        """Return the number of natural periods of a run at the speed of its start.
+
+        Parameters
+        ----------
+        start, end : StiffState and float, rad
+            As of `run`.
+        """
         mean = float(self.frequency(self.places).mean())
         return mean * (end - start.phi1) / start.w1 / (2.0 * math.pi)
 
@@ -312,6 +340,10 @@ class StiffPair(ShortRepr):
             From where on the motion is kept; from the start by default.
         passed : callable
             Told of the knots passed.
+
+        Returns
+        -------
+        StiffRun
 
         Raises
         ------
@@ -380,7 +412,7 @@ class StiffPair(ShortRepr):
         return [low, *inner.tolist(), high]
 
 
-class Arc(NamedTuple):
+class LostContact(NamedTuple):
     """A stretch of the driver's angle without contact.
 
     Attributes
@@ -443,7 +475,7 @@ class StiffRun(ShortRepr):
             return None
         place, pair = self.motion.place, self.pair
         ratio = pair.table(place)[0]
-        return place, ratio * pair.load(place, 0.0) - pair.motor(0.0)
+        return place, ratio * pair.load(place, 0.0) - pair.motor(place, 0.0)
 
     @cached_property
     def residue(self) -> float:
@@ -462,7 +494,12 @@ class StiffRun(ShortRepr):
     def difference(self, other: StiffRun, steps: int = 720) -> tuple[float, float]:
         """Return the largest differences from another run: of the lag, rad, and of w1, rad/s.
 
-        At even places of what both have kept.
+        Parameters
+        ----------
+        other : StiffRun
+            Of the same machine.
+        steps : int
+            Number of even steps of what both have kept, at which they are compared.
         """
         low = max(one.motion.pieces[0].low for one in (self, other))
         high = min(one.motion.place for one in (self, other))
@@ -471,7 +508,7 @@ class StiffRun(ShortRepr):
         return float(apart[2]), float(apart[1])
 
     @cached_property
-    def lost_contact(self) -> list[Arc]:
+    def lost_contact(self) -> list[LostContact]:
         """Arcs without contact in the part that is kept."""
         motion = self.motion
         first = motion.pieces[0].low
@@ -480,8 +517,8 @@ class StiffRun(ShortRepr):
         ends.append((motion.place, motion.mode, ""))
         arcs = []
         for (low, _, mode), (high, _, onto) in pairwise(ends):
-            if mode == PLAY:
-                arcs.append(Arc(low, high, onto, self._impact(high, onto)))
+            if mode == APART:
+                arcs.append(LostContact(low, high, onto, self._impact(high, onto)))
         return arcs
 
     def _impact(self, place: float, onto: str) -> float:
@@ -503,15 +540,15 @@ class StiffRun(ShortRepr):
         phi1 = np.asarray(phi1, dtype=float)
         pair = self.pair
         t, w1, lag, slip = self.states(phi1)[:4]
-        ratio, _, stiffness, _, play, play_slope, *rubs = pair.table.at(phi1)
+        ratio, _, stiffness, _, backlash, backlash_slope, *rubs = pair.table.at(phi1)
         modes = self.motion.modes(phi1)
         sign = np.array([{DRIVE: 1.0, COAST: -1.0}.get(one, 0.0) for one in modes])
         touch = np.array([one in (DRIVE, COAST, MESH) for one in modes])
-        bent = np.where(touch, lag - 0.5 * sign * play, 0.0)
-        closing = slip - 0.5 * sign * play_slope * w1
+        bent = np.where(touch, lag - 0.5 * sign * backlash, 0.0)
+        closing = slip - 0.5 * sign * backlash_slope * w1
         mesh = np.where(touch, stiffness * bent + pair.damping * closing, 0.0)
         kappa = np.where(mesh < 0.0, rubs[1], rubs[0]) if rubs else ratio
-        w2 = ratio * w1 - slip
+        w2, places = ratio * w1 - slip, phi1.tolist()
         return {
             "time": t,
             "w1": w1,
@@ -521,8 +558,6 @@ class StiffRun(ShortRepr):
             "bent": bent,
             "mesh": mesh,
             "driver": kappa * mesh,
-            "motor": np.array([pair.motor(one) for one in w1.tolist()]),
-            "load": np.array(
-                [pair.load(*one) for one in zip(phi1.tolist(), w2.tolist(), strict=True)]
-            ),
+            "motor": np.array([pair.motor(*one) for one in zip(places, w1.tolist(), strict=True)]),
+            "load": np.array([pair.load(*one) for one in zip(places, w2.tolist(), strict=True)]),
         }

@@ -9,17 +9,13 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Callable
 from functools import cached_property
-from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.base.display import ShortRepr
 from gearcam.numeric.arrays import Array
-from gearcam.numeric.chebyshev import expand
-
-_ANY: Final = 1e100
-"""A tolerance that all functions meet; 0 too, unlike infinity."""
+from gearcam.numeric.chebyshev import expand_all
 
 
 class Tabled(ShortRepr):
@@ -56,17 +52,12 @@ class Tabled(ShortRepr):
         knots = np.asarray(knots, dtype=float)
         self.low, self.closed = float(knots[0]), closed
         self.period = float(knots[-1]) - self.low
-        count = len(functions(knots[:1]))
-        edges = knots
-        for number in range(count):  # each may need finer cells than those before
+        self._columns = expand_all(functions, knots, tolerance, cuts=cuts)
 
-            def one(x: Array, number: int = number) -> Array:
-                return functions(x)[number]
-
-            edges = expand(one, edges, tolerance, cuts=cuts).knots
-        self._columns = [
-            expand(lambda x, k=k: functions(x)[k], edges, _ANY, cuts=1) for k in range(count)
-        ]
+    @property
+    def edges(self) -> Array:
+        """Ends of its cells, in which few points tell all."""
+        return self._columns[0].knots
 
     @cached_property
     def _cells(self) -> tuple[list[float], list[tuple[float, float, list[tuple[float, ...]]]]]:

@@ -1,8 +1,8 @@
 """Machines on which methods of integration are compared: error against run time.
 
 Four that differ in what they ask of a method: a vibration without damping (50 periods), teeth that
-rattle in their play (20 impacts), a machine with a changing ratio and stiffness over 60 degrees,
-and the same turning so slowly that its vibrations die away (about a thousand periods).
+rattle in their backlash (20 impacts), a machine with a changing ratio and stiffness over 60
+degrees, and the same turning so slowly that its vibrations die away (about a thousand periods).
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ _K, _J1, _J2, _W = 4.3e6, 0.2, 0.3, 6.0 * math.pi
 
 _PERIODS, _IMPACTS = 50, 20
 
-_PLAY, _ENTERING = 2e-4, 0.5
-"""Play, rad, and speed in it, rad/s."""
+_BACKLASH, _ENTERING = 2e-4, 0.5
+"""Backlash, rad, and speed in it, rad/s."""
 
 _DAMPING, _TEETH, _LOAD = 0.05, 36, 500.0
 
@@ -58,7 +58,7 @@ class Trial(NamedTuple):
     end: float
 
     def run(self, method: str, rtol: float) -> StiffRun:
-        """Return the motion by a method, to a tolerance."""
+        """Return the motion by a `method`, to a tolerance `rtol`."""
         return self.pair.run(self.start, self.end, method=method, rtol=rtol)
 
     def lags(self, run: StiffRun) -> Array:
@@ -74,31 +74,31 @@ class Trial(NamedTuple):
 def trials() -> dict[str, Trial]:
     """Return the machines by name."""
     omega = math.sqrt(_K * (1.0 / _J1 + 1.0 / _J2))
-    half = math.pi / omega + _PLAY / _ENTERING
-    driven = _machine(lambda w: 60.0 * (_W - w))
-    slow = _machine(lambda w: 1e3 * (_W / _SLOWER - w))
+    half = math.pi / omega + _BACKLASH / _ENTERING
+    driven = _machine(lambda _, w: 60.0 * (_W - w))
+    slow = _machine(lambda _, w: 1e3 * (_W / _SLOWER - w))
     return {
         "free": Trial(_even(0.0), StiffState(0.0, _W, 1e-4), _W * _PERIODS * _TURN / omega),
-        "play": Trial(
-            _even(_PLAY), StiffState(0.0, _W, 0.5 * _PLAY, _ENTERING), _W * _IMPACTS * half
+        "rattle": Trial(
+            _even(_BACKLASH), StiffState(0.0, _W, 0.5 * _BACKLASH, _ENTERING), _W * _IMPACTS * half
         ),
         "driven": Trial(driven, driven.resting(0.0, _W), _TURN / 6.0),
         "slow": Trial(slow, slow.resting(0.0, _W / _SLOWER), _TURN / 6.0),
     }
 
 
-def _even(play: float) -> StiffPair:
-    table = _table(lambda _: [1.0, 0.0, _K, 0.0, play, 0.0])
+def _even(backlash: float) -> StiffPair:
+    table = _table(lambda _: [1.0, 0.0, _K, 0.0, backlash, 0.0])
     return StiffPair(
         table=table,
         inertia=(_J1, _J2),
         damping=0.0,
-        motor=lambda _: 0.0,
+        motor=lambda _, __: 0.0,
         load=lambda _, __: 0.0,
     )
 
 
-def _machine(motor: Callable[[float], float]) -> StiffPair:
+def _machine(motor: Callable[[float, float], float]) -> StiffPair:
     def rows(x: Array) -> list[Array | float]:
         swing = 0.15 * _K
         return [
@@ -134,11 +134,14 @@ class Comparison:
         self._true = {name: trial.true() for name, trial in self.trials.items()}
 
     def run(self, method: str, rtol: float) -> dict[str, StiffRun]:
-        """Return the motions by a method, by trial."""
+        """Return the motions by a `method`, to a tolerance `rtol`, by trial."""
         return {name: trial.run(method, rtol) for name, trial in self.trials.items()}
 
     def error(self, name: str, run: StiffRun) -> float:
-        """Return the error of the lag of a trial, in the mean square over its largest lag."""
+        """Return the error of a `run` of the trial `name`.
+
+        In the mean square of its lag, over its largest lag.
+        """
         true = self._true[name]
         missed = self.trials[name].lags(run) - true
         return float(np.sqrt(np.mean(missed**2)) / np.abs(true).max())

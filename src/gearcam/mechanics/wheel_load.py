@@ -21,6 +21,9 @@ _KILO: Final = 1e3
 _FARTHEST: Final = 36000
 """Largest driver angle of a pair that turns more than once, deg."""
 
+OF_SPEED: Final = "omega2"
+"""Variable of formulas over the speed of the driven wheel, rad/s."""
+
 _COLUMNS: Final[Mapping[str, tuple[str, ...]]] = {
     "wheel1": ("wheel1_torque_nm", "torque_nm"),
     "wheel2": ("wheel2_torque_nm", "rack_force_n", "force_n", "torque_nm"),
@@ -33,8 +36,9 @@ class WheelLoadSpec(FromFile, PlacedLoad):
     """A load on a pair: on the driven wheel or rack, or the torque with which the driver turns.
 
     It is positive where it acts against the motion of the driven element, or drives the driver.
-    It may be constant, a formula in the driver's angle phi1 or the driven angle phi2, rad, or rows
-    that are joined by straight lines, also of a file, such as that of the study of a mechanism.
+    It may be constant, a formula in the driver's angle phi1 or the driven angle phi2, rad, or in
+    the driven speed omega2, rad/s, or rows that are joined by straight lines, also of a file, such
+    as that of the study of a mechanism.
 
     Examples
     --------
@@ -43,7 +47,11 @@ class WheelLoadSpec(FromFile, PlacedLoad):
     array([   0., 2000.])
     """
 
-    _variables: ClassVar[Mapping[str, str]] = {"phi1": "phi1", "phi2": "the driven angle phi2"}
+    _variables: ClassVar[Mapping[str, str]] = {
+        "phi1": "phi1",
+        "phi2": "the driven angle phi2",
+        OF_SPEED: "the driven speed omega2",
+    }
 
     on: str = param(
         TEXT, default="wheel2", choices=("wheel1", "wheel2"), doc="what is loaded: driver or driven"
@@ -58,8 +66,8 @@ class WheelLoadSpec(FromFile, PlacedLoad):
         TEXT,
         default=None,
         example="20 + 5*cos(phi1)",
-        doc="torque, N m, or force on a rack, N, as a formula in the driver's angle phi1, rad, or "
-        "in the driven angle phi2, rad",
+        doc="torque, N m, or force on a rack, N, as a formula in the driver's angle phi1, rad, in "
+        "the driven angle phi2, rad, or in the driven speed omega2, rad/s",
     )
     table: Row | None = param(
         default=None,
@@ -162,13 +170,20 @@ class WheelLoadSpec(FromFile, PlacedLoad):
         elif len(angles) and angles[0] > 0.0:
             yield "file", None, f"line {lines[0]}: the rows begin inside the turn", "0 as the first"
 
-    def at(self, phi1: Any, phi2: Any, *, per: float = _KILO) -> Array:
+    @property
+    def of_speed(self) -> bool:
+        """Whether it depends on the speed."""
+        return self.formula is not None and self.read(self.formula)[0] == OF_SPEED
+
+    def at(self, phi1: Any, phi2: Any, omega2: Any = None, *, per: float = _KILO) -> Array:
         """Return the load.
 
         Parameters
         ----------
         phi1, phi2 : (n,) array, rad
             Driver angles in the turn, or the travel, and driven angles.
+        omega2 : (n,) array, optional
+            Speeds of the driven wheel, rad/s; a load that depends on them needs them.
         per : float
             Unit of formula and table in those inside: 1 of N, 1000 of N m.
 
@@ -181,4 +196,5 @@ class WheelLoadSpec(FromFile, PlacedLoad):
             angles, values, _ = self.of_file
             return self._within(x, per * np.interp(x, angles, values))
         given = self.torque if self.force is None else self.force
-        return self._sizes(x, np.asarray(phi2, dtype=float), given, per)
+        other = omega2 if self.of_speed else phi2
+        return self._sizes(x, np.asarray(other, dtype=float), given, per)

@@ -15,7 +15,7 @@ from gearcam.laws.ratio.span import angle_text
 from gearcam.mechanics.hertz import CONTACT_PRESSURE
 from gearcam.meshing.drive_checks import rows_text
 from gearcam.meshing.forces import ToothForces
-from gearcam.meshing.settings import FORCES, STRESS
+from gearcam.meshing.settings import DYNAMIC_FORCES, FORCES, STRESS
 from gearcam.numeric.arrays import Array, Mask
 
 
@@ -81,7 +81,7 @@ class LoadedPair(ShortRepr):
         return rows_text(self.forces.phi1, mask)
 
 
-@check("self-locking", kind=FORCES, relation="at least", severity="error")
+@check("self-locking", kind=(FORCES, DYNAMIC_FORCES), relation="at least", severity="error")
 def self_locking(loaded: LoadedPair, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Report where friction locks the pair: no torque of the driver moves the load.
 
@@ -98,7 +98,7 @@ def self_locking(loaded: LoadedPair, limit: float) -> Iterator[Remark]:  # noqa:
         )
 
 
-@check("unstated-forces", kind=FORCES)
+@check("unstated-forces", kind=(FORCES, DYNAMIC_FORCES))
 def unstated_forces(loaded: LoadedPair, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn of phases in which no flanks touch: their forces are not stated.
 
@@ -128,9 +128,24 @@ def load_reverses(loaded: LoadedPair, limit: float) -> Iterator[Remark]:  # noqa
         )
 
 
+@check("torque-reversal", kind=DYNAMIC_FORCES, severity="note")
+def torque_reversal(loaded: LoadedPair, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Note that the torque of the teeth changes its direction: with backlash they rattle.
+
+    Looks at: the torque of the teeth on the driven wheel, with the inertia of what it turns.
+    """
+    back = loaded.forces.back
+    if back.any() and not back.all():
+        yield Remark(
+            "The driven wheel drives the driver here, by its load and inertia: teeth change their "
+            "flanks, and rattle if they have backlash.",
+            loaded.stretches(back),
+        )
+
+
 @check(
     "contact-pressure",
-    kind=(FORCES, STRESS),
+    kind=(FORCES, DYNAMIC_FORCES, STRESS),
     limit=CONTACT_PRESSURE,
     relation="at most",
     unit="MPa",

@@ -22,6 +22,9 @@ ERRORS = "errors"
 FORCES = "forces of a pair"
 """Registered checks of a study of forces."""
 
+DYNAMIC_FORCES = "forces of a pair in motion"
+"""Registered checks of the forces of the teeth in a study of dynamics."""
+
 STRESS = "stress of a pair"
 """Registered checks of a study of stress."""
 

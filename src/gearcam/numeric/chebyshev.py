@@ -168,6 +168,39 @@ def expand(
     NotSmoothError
         If the function is not finite or not smooth between the breaks.
     """
+
+    def one(x: Array) -> Array:
+        return np.broadcast_to(function(x), x.size)[None]
+
+    return expand_all(one, breaks, tolerance, degree=degree, cuts=cuts)[0]
+
+
+def expand_all(
+    functions: Callable[[Array], Array],
+    breaks: ArrayLike,
+    tolerance: float,
+    *,
+    degree: int = _DEGREE,
+    cuts: int = FIRST_CUTS,
+) -> list[Expansion]:
+    """Return the expansions of several functions on the same intervals (see `expand`).
+
+    Parameters
+    ----------
+    functions : callable
+        ``functions(x) -> (m, n) array`` at n places.
+    breaks, tolerance, degree, cuts
+        As for `expand`; the tolerance is relative to the largest value of each function.
+
+    Returns
+    -------
+    list of m Expansion
+
+    Raises
+    ------
+    NotSmoothError
+        If a function is not finite or not smooth between the breaks.
+    """
     grid = np.asarray(breaks, dtype=float)
     span = grid[-1] - grid[0]
     nodes, to_coefficients = _basis(degree)
@@ -176,37 +209,39 @@ def expand(
     edges = divided(grid, parts)
     low, high = edges[:-1], edges[1:]
     done: list[tuple[Array, Array, Array]] = []
-    scale = 0.0
+    scale: Array | float = 0.0
     before = np.full(low.shape, np.inf)
     for halving in range(halvings + 1):
         x = 0.5 * (low + high) + 0.5 * (high - low) * nodes[:, None]
-        values = np.broadcast_to(function(x.ravel()), x.size).reshape(x.shape)
-        bad = ~np.isfinite(values)
+        values = functions(x.ravel()).reshape(-1, *x.shape)
+        bad = ~np.isfinite(values).all(axis=0)
         if bad.any():
             raise NotSmoothError(float(x[bad][0]), finite=False)
-        scale = max(scale, float(np.abs(values).max()))
+        scale = np.maximum(scale, np.abs(values).max(axis=(1, 2)))
         coefficients = to_coefficients @ values
-        last = np.abs(coefficients[-2:]).max(axis=0)
-        allowed = max(tolerance, 4.0 * np.finfo(float).eps) * scale * np.sqrt(span / (high - low))
+        last = np.abs(coefficients[:, -2:]).max(axis=1)
+        allowed = max(tolerance, 4.0 * np.finfo(float).eps) * np.sqrt(span / (high - low))
         # halving reduces the error at a corner, but not the function's own rounding
-        noise = (last <= _NOISE * scale) & (last >= 0.75 * before)
-        good = (last <= allowed) | noise
+        noise = (last <= _NOISE * scale[:, None]) & (last >= 0.75 * before)
+        good = ((last <= allowed * scale[:, None]) | noise).all(axis=0)
         if good.any():
-            done.append((low[good], high[good], coefficients[:, good]))
+            done.append((low[good], high[good], coefficients[..., good]))
         if good.all():
             break
         if halving == halvings:
             # the first of several corners alike: which is worst is decided by rounding
-            rough = np.where(good, 0.0, last)
+            rough = np.where(
+                good, 0.0, (last / np.where(scale > 0.0, scale, 1.0)[:, None]).max(axis=0)
+            )
             middles = (0.5 * (low + high))[rough >= 0.5 * rough.max()]
             raise NotSmoothError(float(middles.min()), finite=True)
-        low, high, before = low[~good], high[~good], np.tile(last[~good], 2)
+        low, high, before = low[~good], high[~good], np.tile(last[:, ~good], 2)
         middle = 0.5 * (low + high)
         low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
     lows, highs, columns = (np.concatenate(part, axis=-1) for part in zip(*done, strict=True))
     order = np.argsort(lows)
     knots = np.append(lows[order], highs[order[-1]])
-    return Expansion(knots=knots, coefficients=columns[:, order])
+    return [Expansion(knots=knots, coefficients=one) for one in columns[..., order]]
 
 
 _NODES: Final = 10

@@ -73,6 +73,8 @@ class Study:
         What stands for it in the usage.
     demand : callable
         ``demand(design)`` refuses settings that the keys alone allow, before anything is built.
+    elsewhere : mapping of str to str
+        Further options, and the dotted keys of numbers of other tables that they override.
     repeats : tuple of str
         Codes of findings of the design that the study gives anew.
     many : bool
@@ -92,6 +94,7 @@ class Study:
     argument: str = ""
     metavar: str = ""
     demand: Callable[[Design], None] = _anything
+    elsewhere: Mapping[str, str] = field(default_factory=dict)
     repeats: tuple[str, ...] = ()
     many: bool = True
     settings: type | None = None

@@ -11,7 +11,7 @@ import pytest
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.dynamics import integrate
-from gearcam.dynamics.choice import Choice
+from gearcam.dynamics.choice import MethodChoice
 from gearcam.dynamics.integrate import METHODS, Integrator, Mode, Switch
 
 pytest.importorskip("scipy")
@@ -78,12 +78,13 @@ def test_a_mode_that_ends_and_comes_back_within_a_step_is_seen() -> None:
     assert made.mode == "under"
 
 
-def test_a_motion_ends_with_a_mode_that_does_not_go_on() -> None:
+def test_a_motion_ends_with_its_last_mode() -> None:
     stop = Switch(lambda _, y: float(y[0]), "still", 0.0)
     passed: list[float] = []
     knots = [0.0, 1.0, 2.0, 3.0]
     start = "fall", [1.125, 0.0]
-    made = integrator()({"fall": Mode(fall, (stop,))}, start, knots, passed=passed.append)
+    modes = {"fall": Mode(fall, (stop,)), "still": Mode(fall, last=True)}
+    made = integrator()(modes, start, knots, passed=passed.append)
     assert (made.mode, passed) == ("still", [1.0])
     assert made.place == pytest.approx(1.5, abs=1e-9)
     with pytest.raises(ValueError, match="only"):
@@ -126,7 +127,7 @@ class Steps:
         self.nfev += self._work
 
 
-def advanced(choice: Choice, steps: Steps, most: int) -> int:
+def advanced(choice: MethodChoice, steps: Steps, most: int) -> int:
     """Return after how many steps the method changes; `most` if it does not."""
     for number in range(most):
         steps.step()
@@ -136,11 +137,11 @@ def advanced(choice: Choice, steps: Steps, most: int) -> int:
 
 
 def test_steps_shorter_than_stability_asks_are_never_left() -> None:
-    assert advanced(Choice(), Steps(3.9, 12), 1000) == 1000
+    assert advanced(MethodChoice(), Steps(3.9, 12), 1000) == 1000
 
 
 def test_a_trial_that_fails_waits_twice_as_long() -> None:
-    choice, waits = Choice(), []
+    choice, waits = MethodChoice(), []
     for _ in range(4):
         waits.append(advanced(choice, Steps(6.0, 12), 1000))
         assert choice.method == "lsoda"
@@ -150,7 +151,7 @@ def test_a_trial_that_fails_waits_twice_as_long() -> None:
 
 
 def test_a_trial_that_pays_goes_on_until_it_does_not() -> None:
-    choice = Choice()
+    choice = MethodChoice()
     advanced(choice, Steps(6.0, 12), 1000)
     assert advanced(choice, Steps(2.0, 2), 1000) == 1000
     assert advanced(choice, Steps(0.9, 2), 1000) <= 40
@@ -158,7 +159,7 @@ def test_a_trial_that_pays_goes_on_until_it_does_not() -> None:
 
 
 def test_a_method_that_fails_is_left() -> None:
-    choice = Choice()
+    choice = MethodChoice()
     assert not choice.fails()
     advanced(choice, Steps(6.0, 12), 1000)
     assert choice.fails()

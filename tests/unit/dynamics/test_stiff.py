@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from gearcam.base.errors import InfeasibleError
-from gearcam.dynamics.stiff import COAST, DRIVE, PLAY, StiffPair, StiffState
+from gearcam.dynamics.stiff import APART, COAST, DRIVE, StiffPair, StiffState
 from gearcam.dynamics.tabled import Tabled
 from gearcam.dynamics.trials import Comparison
 
@@ -23,10 +23,6 @@ W = 18.85
 RTOL = 1e-6
 
 
-def still(_: float) -> float:
-    return 0.0
-
-
 def free(_: float, __: float) -> float:
     return 0.0
 
@@ -37,7 +33,7 @@ def pair(
     knots=(0.0, TURN),
     inertia=(J1, J2),
     damping=0.0,
-    motor=still,
+    motor=free,
     load=free,
 ) -> StiffPair:
     """Return a pair from i, i', K, K', b, b' over the angle."""
@@ -106,7 +102,7 @@ def test_impacts_in_play_follow_the_closed_form(method):
     assert run.residue < 100 * RTOL
     assert len(run.motion.switches) == 41
     names = [after for _, _, after in run.motion.switches]
-    assert names[:5] == [DRIVE, PLAY, COAST, PLAY, DRIVE]
+    assert names[:5] == [DRIVE, APART, COAST, APART, DRIVE]
     onto_drive = [x for x, _, after in run.motion.switches if after == DRIVE]
     times = run.states(onto_drive)[0]
     period = 2.0 * (math.pi / OMEGA + PLAYED / ENTERING)
@@ -162,7 +158,7 @@ def machine(play: float, **more) -> StiffPair:
             0.0,
         ]
 
-    given = {"inertia": (20.0, J2), "load": lambda *_: 500.0, "motor": lambda w: 60.0 * (W - w)}
+    given = {"inertia": (20.0, J2), "load": lambda *_: 500.0, "motor": lambda _, w: 60.0 * (W - w)}
     damping = 2.0 * 0.05 * math.sqrt(K / (1.0 / J2 + 1.0 / J1))
     return pair(functions, damping=damping, **(given | more))
 
@@ -211,7 +207,7 @@ def test_the_speed_tends_to_that_of_rigid_teeth_with_order_one():
         made = pair(
             lambda x: [1.0 + 0.4 * np.cos(x), -0.4 * np.sin(x), stiffness, 0.0, 0.0, 0.0],
             damping=c,
-            motor=lambda w: 20.0 - w,
+            motor=lambda _, w: 20.0 - w,
         )
         x = np.array([0.5, 2.0, 4.0, TURN])
         run = made.run(made.resting(0.0, W), TURN, rtol=1e-9)
@@ -240,7 +236,7 @@ def test_friction_takes_more_from_the_driver_and_its_work_is_lost():
     made = pair(
         lambda _: [1.0, 0.0, K, 0.0, 0.0, 0.0, drive, coast],
         damping=500.0,
-        motor=lambda _: drive * load,
+        motor=lambda *_: drive * load,
         load=lambda *_: load,
     )
     run = made.run(made.resting(0.0, W, load), 2.0)
@@ -252,7 +248,7 @@ def test_friction_takes_more_from_the_driver_and_its_work_is_lost():
     held = pair(
         lambda _: [1.0, 0.0, K, 0.0, 0.0, 0.0, drive, coast],
         damping=500.0,
-        motor=lambda _: -coast * load,
+        motor=lambda *_: -coast * load,
         load=lambda *_: -load,
     )
     run = held.run(held.resting(0.0, W, -load), 2.0)
@@ -262,7 +258,7 @@ def test_friction_takes_more_from_the_driver_and_its_work_is_lost():
 
 def test_a_machine_that_is_too_weak_stalls_where_its_energy_is_spent():
     load = 50.0
-    made = even(PLAYED, motor=lambda _: 10.0, load=lambda *_: load, damping=200.0)
+    made = even(PLAYED, motor=lambda *_: 10.0, load=lambda *_: load, damping=200.0)
     run = made.run(made.resting(0.0, W), TURN)
     assert run.stalled is not None
     place, lacks = run.stalled
@@ -319,7 +315,7 @@ def test_the_jacobian_is_that_of_differences(sign):
     made = pair(
         functions,
         damping=50.0,
-        motor=lambda w: 20.0 - w * w,
+        motor=lambda _, w: 20.0 - w * w,
         load=lambda x, w: 3.0 * w * w + math.sin(x),
     )
     names = {0.0: "mesh", 1.0: DRIVE, -1.0: COAST}
@@ -358,7 +354,7 @@ def compared() -> Comparison:
     return Comparison()
 
 
-@pytest.mark.parametrize("name", ["free", "play", "driven", "slow"])
+@pytest.mark.parametrize("name", ["free", "rattle", "driven", "slow"])
 def test_auto_works_hardly_more_than_the_best_method_of_its_accuracy(
     compared: Comparison, name: str
 ) -> None:
@@ -383,7 +379,7 @@ def test_auto_leaves_stable_steps_behind_where_nothing_vibrates(compared: Compar
 
 
 def test_auto_follows_vibrations_by_explicit_steps(compared: Comparison) -> None:
-    for name in ("free", "play"):
+    for name in ("free", "rattle"):
         trial = compared.trials[name]
         auto, explicit = (
             trial.run(method, 1e-5).motion.evaluations for method in ("auto", "dop853")
@@ -423,7 +419,7 @@ def random_machine(number: int) -> tuple[StiffPair, StiffState, float, list[floa
         functions,
         inertia=(j1, j2),
         damping=2.0 * zeta * math.sqrt(k / (1.0 / j1 + 1.0 / j2)),
-        motor=lambda w: 2.0 * torque * (1.0 - (w - speed) / speed),
+        motor=lambda _, w: 2.0 * torque * (1.0 - (w - speed) / speed),
         load=load,
     )
     start = made.resting(0.1, speed)

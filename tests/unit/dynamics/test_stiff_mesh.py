@@ -10,7 +10,9 @@ import pytest
 
 import gearcam
 from gearcam.base.errors import InfeasibleError
-from gearcam.dynamics.mesh_stiffness import Smooth, mesh_stiffness, play, secant_stiffness
+from gearcam.dynamics import mesh_stiffness as room
+from gearcam.dynamics.mesh_stiffness import Smooth, backlash_angle, mesh_stiffness, secant_stiffness
+from gearcam.meshing.about_to_touch import about_to_touch
 from gearcam.meshing.contact import contacts
 from gearcam.numeric.roots import bracketed_root
 
@@ -87,17 +89,19 @@ def test_under_load_stiffness_does_not_jump() -> None:
     assert largest_step(4000, 2000.0) < 0.3 * largest_step(1000, 2000.0)
 
 
-def test_a_mesh_that_does_not_touch_is_refused() -> None:
-    text = PAIR.format(eccentricity=0.0, backlash=0.0) + "rack = { addendum = 0.1 }\n"
-    drive = gearcam.build(gearcam.loads(text)).subject.sides[1]
+def test_a_mesh_that_does_not_touch_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    drive = sides(0.0, 0.0)[1]
+    none = contacts(drive, np.zeros(0))
+    monkeypatch.setattr(room, "contacts", lambda *_: none)
+    monkeypatch.setattr(room, "about_to_touch", lambda *_: about_to_touch(drive, [], none, 1.0))
     with pytest.raises(InfeasibleError, match="no teeth touch"):
         mesh_stiffness(drive, np.linspace(0.0, 1.0, 100), 14.0, 10.0, 100.0)
 
 
 def test_the_play_of_circular_wheels_is_the_backlash_over_the_radius() -> None:
     phi1 = np.linspace(0.0, TURN, 50)
-    assert play(sides(0.0, 0.01), phi1) == pytest.approx(0.01 / 82.0, rel=1e-5)
-    assert play(sides(0.0, 0.0), phi1) == pytest.approx(0.0, abs=1e-12)
+    assert backlash_angle(sides(0.0, 0.01), phi1) == pytest.approx(0.01 / 82.0, rel=1e-5)
+    assert backlash_angle(sides(0.0, 0.0), phi1) == pytest.approx(0.0, abs=1e-12)
 
 
 @pytest.mark.parametrize("backlash", [0.1, 0.01])
@@ -110,7 +114,7 @@ def test_the_play_of_other_wheels_has_the_levers_of_both_normals(backlash: float
         found, lever = contacts(side, phi1), np.zeros(50)
         lever[found.step] = found.lever[1]
         closed += 0.5 * backlash * math.cos(ALPHA) / lever
-    found = play(both, phi1)
+    found = backlash_angle(both, phi1)
     assert found == pytest.approx(closed, rel=0.01 * backlash)
     # not the backlash over the radius: pitch curves lie askew to the line of centres
     of_radius = found * distance / (1.0 + result.law.ratio(phi1)) / backlash

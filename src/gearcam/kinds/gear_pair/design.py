@@ -16,6 +16,7 @@ from gearcam.designs.kind import Examined
 from gearcam.designs.nodes import Choice
 from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, pose_param, studies_param
 from gearcam.designs.table import table_of
+from gearcam.dynamics.settings import DYNAMICS, PairDynamicsSpec
 from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.gears.subject import KIND as TEETH
 from gearcam.kinds.gear_pair.load_settings import StressSpec
@@ -24,8 +25,16 @@ from gearcam.laws.ratio import LAWS
 from gearcam.mechanics.drive import DriveSpec
 from gearcam.mechanics.friction import WheelFrictionSpec
 from gearcam.mechanics.material import MaterialSpec
+from gearcam.mechanics.motor import MotorSpec
 from gearcam.mechanics.wheel_load import WheelLoadSpec
-from gearcam.meshing.settings import ERRORS, FORCES, STRESS, ErrorsSpec, MeshingSpec
+from gearcam.meshing.settings import (
+    DYNAMIC_FORCES,
+    ERRORS,
+    FORCES,
+    STRESS,
+    ErrorsSpec,
+    MeshingSpec,
+)
 from gearcam.meshing.settings import KIND as MESHING
 from gearcam.parts.blank import KIND as PARTS
 from gearcam.parts.blank import Blank, serving
@@ -76,6 +85,16 @@ STUDIES: Final = studies_of(
         demand=deferred(f"{_HERE}.stress:demand"),
         options={"teeth": "tooth"},
         repeats=("contact-pressure",),  # with the true shares
+    ),
+    Study(
+        name="dynamics",
+        key="dynamics",
+        doc="Compute speeds, torques and tooth forces in motion; write DIR/NAME/dynamics.csv.",
+        done="computed",
+        table="dynamics",
+        compute=deferred(f"{_HERE}.dynamics:study_dynamics"),
+        demand=deferred(f"{_HERE}.dynamics:demand"),
+        elsewhere={"speed": "drive.speed_rpm"},
     ),
     ACCURACY,
 )
@@ -151,6 +170,10 @@ class GearPairDesign(Design):
         Phases of the study of forces.
     stress : StressSpec
         Settings of the study of stress.
+    motor : MotorSpec
+        What turns the driver.
+    dynamics : PairDynamicsSpec
+        Settings of the study of dynamics.
     goal : GoalSpec
         What `gearcam optimize` seeks.
     accuracy : AccuracySpec
@@ -181,6 +204,8 @@ class GearPairDesign(Design):
     material: MaterialSpec = field(default_factory=MaterialSpec)
     forces: ForcesSpec = field(default_factory=ForcesSpec)
     stress: StressSpec = field(default_factory=StressSpec)
+    motor: MotorSpec = field(default_factory=MotorSpec)
+    dynamics: PairDynamicsSpec = field(default_factory=PairDynamicsSpec)
     accuracy: AccuracySpec = field(default_factory=AccuracySpec)
     goal: GoalSpec = field(default_factory=GoalSpec)
 
@@ -253,8 +278,9 @@ def _load_faults(
         if slides and one.column and not one.slides:
             message = f"has {one.column}, but a rack does not turn"
             yield Fault((*key, "file"), message, one.file, "a column force_n")
-        if on_rack and one.formula is not None and one.read(one.formula)[0] == "phi2":
-            message = "a rack has no angle phi2"
+        variable = one.read(one.formula)[0] if one.formula is not None else "phi1"
+        if on_rack and variable != "phi1":
+            message = f"a rack has no {variable}"
             yield Fault((*key, "formula"), message, one.formula, "a formula of phi1")
 
 
@@ -340,9 +366,20 @@ KIND: Final = Kind(
         "gearcam.meshing.error_checks",
         "gearcam.meshing.force_checks",
         "gearcam.stress.checks",
+        "gearcam.dynamics.checks",
         "gearcam.parts.checks",
     ),
-    check_groups=(TEETH, "rows of tables", MESHING, ERRORS, FORCES, STRESS, PARTS),
+    check_groups=(
+        TEETH,
+        "rows of tables",
+        MESHING,
+        ERRORS,
+        FORCES,
+        DYNAMIC_FORCES,
+        STRESS,
+        DYNAMICS,
+        PARTS,
+    ),
     example={
         "law": {
             "type": "phases",

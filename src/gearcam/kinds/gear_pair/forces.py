@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from gearcam.gears.contact import FlankPairs
     from gearcam.kinds.gear_pair.result import GearPairResult
     from gearcam.mechanics.wheel_load import WheelLoadSpec
+    from gearcam.meshing.forces import ToothForces
     from gearcam.numeric.arrays import Array, Ints
     from gearcam.pictures.scenes import ColouredCurve
     from gearcam.results.study import Progress
@@ -52,7 +53,7 @@ _NOISE: Final = 1e-9
 
 
 def demand(design: Any) -> None:
-    """Refuse a design without a load.
+    """Refuse a design without a load, or without a speed on which one depends.
 
     Parameters
     ----------
@@ -62,11 +63,16 @@ def demand(design: Any) -> None:
     Raises
     ------
     DesignError
-        If nothing acts on the pair.
+        If nothing acts on the pair, or the speed is missing.
     """
     if not design.load:
         what, near = "nothing acts on the pair", 'a table [[load]] with on = "wheel2" and torque_nm'
         raise DesignError([Problem(what, file=design.source, key="load", allowed=near)])
+    fast = [number for number, one in enumerate(design.load) if one.of_speed]
+    if fast and design.drive.speed is None:
+        what, key = f"is missing: load[{fast[0]}] depends on the speed", "drive.speed_rpm"
+        problem = Problem(what, file=design.source, key=key, allowed="a speed above 0")
+        raise DesignError([problem])
 
 
 class PairUnderLoad:
@@ -84,10 +90,9 @@ class PairUnderLoad:
     """
 
     def __init__(self, result: GearPairResult) -> None:
-        demand(result.design)
         self.result = result
         self.loads: tuple[WheelLoadSpec, ...] = result.design.load
-        self.turns = result.pair.closed
+        self.turns = bool(result.pair.closed)
         self.travel = _TURN if self.turns else float(result.turn(1)[-1])
         for number, load in enumerate(self.loads):
             if load.file is not None:  # it may have been changed
@@ -104,7 +109,7 @@ class PairUnderLoad:
     @property
     def on_driver(self) -> bool:
         """Whether the driver's torque is given."""
-        return self.loads[0].on == "wheel1"
+        return bool(self.loads) and self.loads[0].on == "wheel1"
 
     @property
     def effort(self) -> tuple[str, str, float]:
@@ -119,18 +124,41 @@ class PairUnderLoad:
 
     def _given(self, phi1: Array) -> Array:
         """Return the load at driver angles, rad, (n,), N mm or N; refused if it is not finite."""
+        return self.given(phi1, self.result.design.drive.speed)
+
+    def given(self, phi1: Array, speed: float | None) -> Array:
+        """Return the load as it is given.
+
+        Parameters
+        ----------
+        phi1 : (n,) array, rad
+            Driver angles.
+        speed : float or None, rad/s
+            Of the driver, for loads that depend on it.
+
+        Returns
+        -------
+        (n,) array, N mm or N
+            On the driven element, against its motion, or the torque of the driver.
+
+        Raises
+        ------
+        DesignError
+            If it is not finite.
+        """
         x = np.mod(phi1, _TURN) if self.turns else phi1
-        phi2 = self.result.law.phi2(phi1)
+        phi2, ratio = self.result.pair.rolling.guide.motion(phi1)
         per = 1.0 if self.result.pair.on_rack and not self.on_driver else TORQUE.factor
+        omega2 = None if speed is None else speed * ratio
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            found = [one.at(x, phi2, per=per) for one in self.loads]
+            found = [one.at(x, phi2, omega2, per=per) for one in self.loads]
         for number, values in enumerate(found):
             wrong = np.flatnonzero(~np.isfinite(values))
             if wrong.size:
                 what = f"is not finite at {angle_text(float(phi1[wrong[0]]))}"
                 key, source = f"load[{number}].formula", self.result.design.source
                 raise DesignError([Problem(what, file=source, key=key, allowed="finite values")])
-        return np.sum(found, axis=0)
+        return np.sum(found, axis=0) if found else np.zeros(np.shape(phi1))
 
     def without_friction(self, phi1: Array) -> Array:
         """Return the load on the driven element at driver angles, rad, (n,), if nothing rubs."""
@@ -141,13 +169,7 @@ class PairUnderLoad:
     def loaded(self, phi1: Array) -> LoadedPair:
         """Return the forces at driver angles, rad, (n,)."""
         design = self.result.design
-        forces = tooth_forces(
-            self.sides,
-            phi1,
-            self._given(phi1),
-            on_driver=self.on_driver,
-            friction=design.friction,
-        )
+        forces = self.forces(phi1, self._given(phi1))
         per_width = forces.of_teeth / self.width
         return LoadedPair(
             forces=forces,
@@ -155,6 +177,19 @@ class PairUnderLoad:
             half_width=half_width(per_width, forces.teeth.points.curvature, design.material),
             yielding=yield_pressure(design.material),
         )
+
+    def forces(self, phi1: Array, given: Array) -> ToothForces:
+        """Return the forces of the teeth under a load (see `tooth_forces`).
+
+        Parameters
+        ----------
+        phi1 : (n,) array, rad
+            Driver angles.
+        given : (n,) array, N mm or N
+            See `given`.
+        """
+        friction = self.result.design.friction
+        return tooth_forces(self.sides, phi1, given, on_driver=self.on_driver, friction=friction)
 
     def places(self) -> Array:
         """Return the driver angles that are studied, rad; they rise.
@@ -164,19 +199,29 @@ class PairUnderLoad:
         """
         even = np.linspace(0.0, self.travel, self.result.design.forces.steps + 1)
         back = self._given(even) < 0.0
-        carrying = [
-            pairs
-            for both in self.sides
-            for pairs, carries in zip(both, (back.any(), not back.all()), strict=True)
-            if carries
-        ]
-        ends = [pairs.arcs.stretches[0] for pairs in carrying]
-        # at the pitch point the sliding changes its direction, and so does friction
-        ends += [pairs.track.angle(pairs.wheels[0].place(pairs.numbers)) for pairs in carrying]
-        knots = np.concatenate([self.result.knots, *(one.knots for one in self.loads), *ends])
-        knots = np.unique(knots[(knots > 0.0) & (knots < self.travel)])
+        knots = self.knots(back=back.any(), forth=not back.all())
         x = np.unique(np.concatenate([even, knots, np.nextafter(knots, -np.inf)]))
         return np.union1d(x, self._extremes(with_both_sides(x, knots)))
+
+    def knots(self, *, back: bool, forth: bool) -> Array:
+        """Return where ratio, load or what carries jumps or bends, rad, within the travel.
+
+        Parameters
+        ----------
+        back, forth : bool
+            Whether coast flanks carry, and whether driving flanks do.
+        """
+        sides = [
+            pairs
+            for both in self.sides
+            for pairs, carries in zip(both, (back, forth), strict=True)
+            if carries
+        ]
+        ends = [pairs.arcs.stretches[0] for pairs in sides]
+        # at the pitch point the sliding changes its direction, and so does friction
+        ends += [pairs.track.angle(pairs.wheels[0].place(pairs.numbers)) for pairs in sides]
+        knots = np.concatenate([self.result.knots, *(one.knots for one in self.loads), *ends])
+        return np.unique(knots[(knots > 0.0) & (knots < self.travel)])
 
     def _extremes(self, x: Array) -> Array:
         """Return where the quantities of the facts are largest, or least, near angles `x`.
@@ -338,7 +383,7 @@ def _facts(under: PairUnderLoad, loaded: LoadedPair) -> Tree:
         without.append("guide of the rack")
 
     def fact(values: Array, label: str, unit: str, rows: Ints | None = None) -> Fact | None:
-        return _extreme(loaded, values, label, unit, rows)
+        return extreme_fact(loaded, values, label, unit, rows)
 
     return {
         f"load_{end}": fact(scale * forces.load, "load on the driven element", unit),
@@ -354,7 +399,7 @@ def _facts(under: PairUnderLoad, loaded: LoadedPair) -> Tree:
     }
 
 
-def _extreme(
+def extreme_fact(
     loaded: LoadedPair, values: Array, label: str, unit: str, rows: Ints | None = None
 ) -> Fact | None:
     """Return the range of some values, with the place of the largest, as a fact."""

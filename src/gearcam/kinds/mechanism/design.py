@@ -29,6 +29,7 @@ from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.base.rules import Breach, distinct, needs
 from gearcam.designs.design import Design
 from gearcam.designs.outputs import OutputSpec, files_param, pose_param, studies_param
+from gearcam.dynamics.settings import DYNAMICS, DynamicsSpec
 from gearcam.kinds.mechanism import drives, names, parts
 from gearcam.kinds.mechanism.asked import TABLES, DwellSpec, IntervalSpec, StretchSpec
 from gearcam.kinds.mechanism.drives import CompareSpec, MachineDrive
@@ -36,6 +37,7 @@ from gearcam.kinds.mechanism.keys import NAME, Sort, WithNames, named
 from gearcam.kinds.mechanism.tolerances import MachinePrecisionSpec, ToleranceSpec
 from gearcam.kinds.shared import ACCURACY, AccuracySpec, ForcesSpec, GoalSpec
 from gearcam.mechanics.gravity import GravitySpec
+from gearcam.mechanics.motor import MotorSpec
 from gearcam.results.kind import Kind, Study, studies_of
 
 if TYPE_CHECKING:
@@ -85,6 +87,17 @@ STUDIES: Final = studies_of(
         table="balance",
         compute=deferred(f"{_HERE}.balance:study_balance"),
         demand=deferred(f"{_HERE}.balance:demand"),
+        repeats=("loads-unused",),
+    ),
+    Study(
+        name="dynamics",
+        key="dynamics",
+        doc="Compute speeds and torques of the machine in motion; write DIR/NAME/dynamics.csv.",
+        done="computed",
+        table="dynamics",
+        compute=deferred(f"{_HERE}.dynamics:study_dynamics"),
+        demand=deferred(f"{_HERE}.dynamics:demand"),
+        elsewhere={"speed": "drive[0].speed_rpm"},
         repeats=("loads-unused",),
     ),
     ACCURACY,
@@ -366,6 +379,8 @@ class MechanismDesign(Design):
     balance: BalanceSpec = field(default_factory=BalanceSpec)
     rotor: tuple[RotorSpec, ...] = ()
     torque: TorqueSpec = field(default_factory=TorqueSpec)
+    motor: MotorSpec = field(default_factory=MotorSpec)
+    dynamics: DynamicsSpec = field(default_factory=DynamicsSpec)
     output: MechanismOutput = field(default_factory=MechanismOutput)
     accuracy: AccuracySpec = field(default_factory=AccuracySpec)
     goal: GoalSpec = field(default_factory=GoalSpec)
@@ -392,6 +407,7 @@ KIND: Final = Kind(
         f"{_HERE}.torque",
         f"{_HERE}.force_checks",
         f"{_HERE}.precision_checks",
+        "gearcam.dynamics.checks",
     ),
     check_groups=(
         "mechanisms",
@@ -399,6 +415,7 @@ KIND: Final = Kind(
         "torque of a mechanism",
         "forces of a mechanism",
         "precision of a mechanism",
+        DYNAMICS,
     ),
     example={
         "drive": [{"name": "motor", "even": True, "speed_rpm": 60}],

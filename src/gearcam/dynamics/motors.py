@@ -1,0 +1,188 @@
+"""Torques of motors over the driver's angle and speed (000, 5.1.3), N m.
+
+A *motor* returns its torque at single places or at arrays of them, for speeds from 0 on.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from bisect import bisect_right
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar, Final
+
+import numpy as np
+
+from gearcam.base.display import ShortRepr
+from gearcam.base.quantities import RPM, TORQUE
+from gearcam.mechanics.motor import MotorSpec
+
+_KILO: Final = TORQUE.factor
+"""N mm in a N m."""
+
+
+class Motor(ABC, ShortRepr):
+    """What turns the driver."""
+
+    settles: ClassVar[bool] = False
+    """Whether its torque falls with the speed, so that a machine has a regime of its own."""
+    highest: float = math.inf
+    """Speed up to which its torque is known, rad/s."""
+    scale: float = 0.0
+    """A usual speed of the driver, rad/s; 0 if it has none."""
+
+    @abstractmethod
+    def torque(self, phi: Any, omega: Any) -> Any:
+        """Return its torque, N m.
+
+        Parameters
+        ----------
+        phi, omega : float or (n,) array
+            Angle of the driver from the start, rad, and its speed, rad/s.
+        """
+
+
+@dataclass(frozen=True)
+class ConstantMotor(Motor):
+    """A motor with the same torque at all speeds; of 0 the machine coasts."""
+
+    size: float = 0.0
+
+    def torque(self, phi: Any, omega: Any) -> Any:  # noqa: ARG002
+        """Return its torque."""
+        return self.size + 0.0 * omega
+
+
+@dataclass(frozen=True)
+class SpringMotor(Motor):
+    """A wound spring, whose torque falls with the angle until it is unwound."""
+
+    start: float
+    fall: float
+
+    def torque(self, phi: Any, omega: Any) -> Any:
+        """Return ``start - fall*phi``, 0 at least."""
+        left = self.start - self.fall * phi
+        return 0.5 * (left + abs(left)) + 0.0 * omega
+
+
+@dataclass(frozen=True)
+class LinearMotor(Motor):
+    """A motor whose torque falls evenly with the speed (5.20)."""
+
+    start: float
+    idle: float
+
+    settles = True
+
+    @property
+    def scale(self) -> float:  # type: ignore[override]
+        """Its speed without load, rad/s."""
+        return self.idle
+
+    def torque(self, phi: Any, omega: Any) -> Any:  # noqa: ARG002
+        """Return ``start*(1 - omega/idle)``."""
+        return self.start * (1.0 - omega / self.idle)
+
+
+@dataclass(frozen=True)
+class AsynchronousMotor(Motor):
+    """An induction motor, by Kloss's formula ``M = 2*Mk/(s/sk + sk/s)``."""
+
+    breakdown: float
+    slip: float
+    synchronous: float
+
+    settles = True
+
+    @property
+    def scale(self) -> float:  # type: ignore[override]
+        """Its synchronous speed, rad/s."""
+        return self.synchronous
+
+    def torque(self, phi: Any, omega: Any) -> Any:  # noqa: ARG002
+        """Return its torque; above the synchronous speed it brakes."""
+        s = 1.0 - omega / self.synchronous
+        return 2.0 * self.breakdown * s * self.slip / (s * s + self.slip * self.slip)
+
+
+@dataclass(frozen=True)
+class TableMotor(Motor):
+    """A motor with torques at some speeds: a monotone cubic through them (Fritsch, Butland)."""
+
+    speeds: tuple[float, ...]
+    sizes: tuple[float, ...]
+
+    @property
+    def settles(self) -> bool:  # type: ignore[override]
+        """Whether it has less torque at its highest speed than anywhere below."""
+        return self.sizes[-1] < min(self.sizes[:-1])
+
+    @property
+    def highest(self) -> float:  # type: ignore[override]
+        """Its highest speed."""
+        return self.speeds[-1]
+
+    @property
+    def scale(self) -> float:  # type: ignore[override]
+        """Its highest speed."""
+        return self.speeds[-1]
+
+    @cached_property
+    def _cells(self) -> tuple[list[float], list[tuple[float, ...]], Any]:
+        from scipy.interpolate import PchipInterpolator
+
+        if len(self.speeds) == 2:
+            (a, b), (low, high) = self.sizes, self.speeds
+            powers = np.array([[0.0], [0.0], [(b - a) / (high - low)], [a]])
+        else:
+            powers = np.asarray(PchipInterpolator(self.speeds, self.sizes).c)
+        return [*self.speeds[1:-1]], [tuple(one) for one in powers.T.tolist()], powers
+
+    def torque(self, phi: Any, omega: Any) -> Any:  # noqa: ARG002
+        """Return its torque; beyond its speeds it goes on along the last chord."""
+        inner, cells, powers = self._cells
+        if isinstance(omega, np.ndarray):
+            within = np.minimum(omega, self.highest)
+            cell = np.searchsorted(inner, within, side="right")
+            a, b, c, d = powers[:, cell]
+            low = np.asarray(self.speeds)[cell]
+        else:
+            within = min(omega, self.highest)
+            number = bisect_right(inner, within)
+            a, b, c, d = cells[number]
+            low = self.speeds[number]
+        t = within - low
+        chord = (self.sizes[-1] - self.sizes[-2]) / (self.speeds[-1] - self.speeds[-2])
+        return ((a * t + b) * t + c) * t + d + chord * (omega - within)
+
+
+def motor_of(spec: MotorSpec) -> Motor | None:
+    """Return the motor of a table ``[motor]``; None if the driver turns evenly.
+
+    Parameters
+    ----------
+    spec : MotorSpec
+        The table; a constant torque that is left out is 0 here.
+    """
+
+    def si(value: float | None) -> float:
+        return (value or 0.0) / _KILO
+
+    torque = spec.torque or (0.0,)
+    match spec.type:
+        case "speed":
+            return None
+        case "spring":
+            return SpringMotor(si(torque[0]), si(spec.stiffness))
+        case "linear":
+            return LinearMotor(si(spec.start_torque), spec.idle or 0.0)
+        case "asynchronous":
+            slip, synchronous = spec.breakdown_slip or 0.0, spec.synchronous or 0.0
+            return AsynchronousMotor(si(spec.breakdown_torque), slip, synchronous)
+        case "table":
+            speeds = tuple(RPM.factor * one for one in spec.rpm or ())
+            return TableMotor(speeds, tuple(map(si, torque)))
+        case _:
+            return ConstantMotor(si(torque[0]))

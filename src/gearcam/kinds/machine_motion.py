@@ -1,0 +1,447 @@
+"""The motion of a machine with rigid members, and what is shown of it: of pairs and mechanisms."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from gearcam.base.display import ShortRepr
+from gearcam.base.errors import DesignError, InfeasibleError, MissingExtraError, Problem
+from gearcam.base.facts import Fact, Tree, extent
+from gearcam.base.findings import Finding, run_checks
+from gearcam.base.numerals import formatted
+from gearcam.base.quantities import RPM
+from gearcam.dynamics.checks import MovingMachine
+from gearcam.dynamics.motors import ConstantMotor, motor_of
+from gearcam.dynamics.regime import even_torque, flywheel, regime
+from gearcam.dynamics.rigid import RigidMotion, RigidRun
+from gearcam.dynamics.settings import COAST, DYNAMICS, REGIME, START, TURNS
+from gearcam.numeric.piecewise import with_both_sides
+from gearcam.pictures.charts import Chart, Line, knot_marks
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from gearcam.dynamics.machine import Machine
+    from gearcam.dynamics.motors import Motor
+    from gearcam.dynamics.settings import DynamicsSpec
+    from gearcam.mechanics.motor import MotorSpec
+    from gearcam.numeric.arrays import Array
+
+_FINER: Final = 1e-3
+"""Tolerance of a rigid machine over that of the design, 1e-12 at least."""
+
+_LEAST_TOLERANCE: Final = 1e-12
+
+_HIGHEST: Final = 4
+"""Highest degree of a polynomial in the speed that a load may be."""
+
+_SAME: Final = 1e-9
+"""Difference of loads over the largest that is rounding."""
+
+_ROWS: Final = 100_000
+"""Largest number of rows of the table."""
+
+
+def demand(design: Any, speed: float | None, key: str) -> None:
+    """Refuse a run that has neither a motor nor a speed, or an unfit one.
+
+    Parameters
+    ----------
+    design : Design
+        With the tables ``[dynamics]`` and ``[motor]``.
+    speed : float or None, rad/s
+        Mean speed of the driver.
+    key : str
+        Its key.
+
+    Raises
+    ------
+    DesignError
+        If the run cannot be.
+    MissingExtraError
+        If scipy is not installed.
+    """
+    from importlib.util import find_spec
+
+    problem = _problem(design.motor, design.dynamics.run, speed, key)
+    if problem is not None:
+        raise DesignError([replace(problem, file=design.source)])
+    if find_spec("scipy") is None:
+        raise MissingExtraError("dynamics", "dynamics")
+
+
+def _problem(motor: MotorSpec, run: str, speed: float | None, key: str) -> Problem | None:
+    """Return what is wrong with a run, or None."""
+    missing = "is missing: "
+    if run == REGIME and motor.type in ("none", "spring"):
+        what = f'"{motor.type}": such a machine has no regime'
+        return Problem(
+            what, key="motor.type", allowed='a motor, or run = "start", "turns", "coast"'
+        )
+    if run == REGIME and motor.type == "constant" and motor.torque is not None:
+        what = "a motor of an even torque has no regime of its own"
+        near = f"left out, with {key}: then it is the mean of the load"
+        return Problem(what, key="motor.torque_nm", allowed=near)
+    if run in (START, TURNS) and motor.type == "constant" and motor.torque is None:
+        return Problem(
+            missing + "the motor has no torque", key="motor.torque_nm", allowed="a torque"
+        )
+    if run == START and motor.turns_evenly:
+        what = '"start": a driver that turns evenly does not start'
+        return Problem(what, key="dynamics.run", allowed="with another motor than speed")
+    evenly = motor.turns_evenly or (motor.type == "constant" and run == REGIME)
+    if speed is None and (evenly or run in (TURNS, COAST)):
+        return Problem(missing + "the speed of the driver", key=key, allowed="a speed above 0")
+    if motor.flywheel == "solve" and run != REGIME:
+        what = f'"solve": a flywheel is found for a regime, not for run = "{run}"'
+        return Problem(what, key="motor.flywheel_kg_m2", allowed='a number, or run = "regime"')
+    if motor.flywheel == "solve" and motor.turns_evenly:
+        what = '"solve": a driver that turns evenly needs no flywheel'
+        return Problem(what, key="motor.flywheel_kg_m2", allowed="a motor of another type")
+    return None
+
+
+def usual_speed(motor: MotorSpec, speed: float | None) -> float:
+    """Return a usual speed of a driver, rad/s: its mean speed if that is given."""
+    made = motor_of(motor)
+    return speed or (made.scale if made is not None else 0.0) or 1.0
+
+
+def speed_powers(
+    load: Callable[[Array, float], Array], places: Array, speed: float
+) -> Callable[[Array], Array]:
+    """Return the coefficients of a load as a polynomial of the driver's speed.
+
+    Parameters
+    ----------
+    load : callable
+        ``load(phi, omega)`` at angles (n,), rad, and a speed, rad/s.
+    places : (m,) array, rad
+        Where the degree of the polynomial is looked for.
+    speed : float, rad/s
+        A usual speed.
+
+    Returns
+    -------
+    callable
+        ``function(phi) -> (degree + 1, n) array``, the lowest power first.
+
+    Raises
+    ------
+    InfeasibleError
+        If the load is no polynomial of a low degree.
+    """
+    shares = np.linspace(0.15, 1.9, 8)
+    found = np.array([load(places, float(share * speed)) for share in shares])
+    fits = np.polynomial.polynomial
+    for degree in range(_HIGHEST + 1):
+        fit = fits.polyfit(shares, found, degree)
+        if np.abs(found - fits.polyval(shares, fit).T).max() <= _SAME * np.abs(found).max():
+            break
+    else:
+        what = f"it is no polynomial of the velocity, of degree {_HIGHEST} or less"
+        raise InfeasibleError(what, where="load", nearest="such as 200 + 3*v or 0.1*v**2")
+    speeds = speed * (1.0 - np.cos(np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1)))
+    to_powers = np.linalg.inv(np.vander(speeds, increasing=True))
+    # powers that the polynomial does not have are rounding
+    sizes = np.abs(fit).max(axis=1)
+    to_powers[sizes <= _SAME * sizes.max()] = 0.0
+    return lambda phi: to_powers @ np.array([load(phi, float(one)) for one in speeds])
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class MachineRun(ShortRepr):
+    """A machine with the motor and the run of its design.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine, without a flywheel.
+    design : Design
+        With ``dynamics`` and ``motor``.
+    speed : float or None, rad/s
+        Mean speed of the driver.
+    place : callable
+        ``place(phi)`` returns an angle of the driver in words.
+    axis : str
+        That angle as the axis of charts.
+    symbol : str
+        Its symbol in columns.
+    """
+
+    machine: Machine
+    design: Any
+    speed: float | None
+    place: Callable[[float], str]
+    axis: str
+    symbol: str
+
+    @property
+    def spec(self) -> DynamicsSpec:
+        """The table ``[dynamics]``."""
+        return self.design.dynamics
+
+    @cached_property
+    def motor(self) -> Motor | None:
+        """The motor; None at an even speed."""
+        return ConstantMotor() if self.spec.run == COAST else motor_of(self.design.motor)
+
+    @cached_property
+    def _found(self) -> tuple[float, RigidMotion]:
+        given = self.design.motor.flywheel
+        if given == "solve":
+            return flywheel(self._with, self.design.motor.irregularity)
+        return given, self._with(given)
+
+    @property
+    def flywheel(self) -> float:
+        """The flywheel, given or found, kg m2."""
+        return self._found[0]
+
+    @cached_property
+    def motion(self) -> RigidMotion:
+        """The motion; a regime is that of one turn.
+
+        Raises
+        ------
+        InfeasibleError
+            If there is no regime, or the driver is faster than the motor's table.
+        """
+        motion = self._found[1]
+        least, largest = motion.speeds[0][1], motion.speeds[1][1]
+        ends = getattr(motion.motor, "speeds", (0.0, math.inf))
+        for found, end, off in ((least, ends[0], -1.0), (largest, ends[-1], 1.0)):
+            if motion.stopped is None and off * (found - end) > 1e-9 * largest:
+                what = "the motor's table does not reach over the speeds of the driver"
+                raise InfeasibleError(
+                    what,
+                    where="motor.rpm",
+                    value=found / RPM.factor,
+                    limit=end / RPM.factor,
+                    unit="rpm",
+                    nearest="rows up to the speeds that are reached",
+                )
+        return motion
+
+    def _with(self, inertia: float) -> RigidMotion:
+        """Return the motion with a flywheel, kg m2."""
+        self._demand_turns()
+        machine, spec = self.machine.with_flywheel(inertia), self.spec
+        turns = spec.turns or (3 if machine.closed else 1)
+        if not machine.inertia(machine.rows(float(machine.knots[0]))) > 0.0:
+            what = "nothing of the machine has inertia"
+            raise InfeasibleError(what, where="dynamics", nearest="a flywheel, or masses")
+        if self.motor is None:
+            return RigidMotion(
+                machine=machine, motor=None, knots=machine.knots, even=self.speed or 0.0
+            )
+        run = RigidRun(
+            machine=machine,
+            motor=self.motor,
+            scale=self.motor.scale or self.speed or self._guessed(machine),
+            rtol=max(_FINER * spec.tolerance, _LEAST_TOLERANCE),
+        )
+        if spec.run == START:
+            return run.from_rest(turns)
+        if spec.run in (TURNS, COAST):
+            return run.from_speed(self.speed or 0.0, turns)
+        if self.motor.settles:
+            return regime(run)
+        return even_torque(run, self.speed or 0.0)
+
+    def _demand_turns(self) -> None:
+        """Refuse a regime, or turns, of a machine that has a travel."""
+        if self.machine.closed:
+            return
+        steady = self.spec.run == REGIME and self.motor is not None
+        if not steady and (self.spec.turns or 1) == 1:
+            return
+        what = "a machine with a travel has no turns"
+        key, near = "dynamics.turns", "1"
+        if steady:
+            what = '"regime": a machine with a travel has none'
+            key, near = "dynamics.run", '"start", or "turns" from drive.speed_rpm'
+        raise DesignError([Problem(what, file=self.design.source, key=key, allowed=near)])
+
+    def _guessed(self, machine: Machine) -> float:
+        """Return a speed that the motor reaches in a turn from rest without load, rad/s."""
+        low = float(machine.knots[0])
+        torque = float(abs(self.motor.torque(low, 0.0))) if self.motor else 0.0
+        return math.sqrt(2.0 * torque * machine.period / machine.inertia(machine.rows(low))) or 1.0
+
+    @cached_property
+    def places(self) -> Array:
+        """The driver's angles of the table, rad: even steps, and both sides of knots."""
+        low, high = self.motion.ends
+        turns = (high - low) / self.machine.period
+        count = max(2, min(_ROWS, math.ceil(turns * self.spec.steps) + 1))
+        return with_both_sides(np.linspace(low, high, count), self.motion.knots)
+
+    def columns(self) -> dict[str, Array]:
+        """Return the columns of ``dynamics.csv`` that all machines have."""
+        phi, motion = self.places, self.motion
+        omega = motion.speed(phi)
+        driving, load, lost = motion.torques(phi)
+        return {
+            "t_s": motion.time(phi),
+            f"{self.symbol}_deg": np.degrees(phi),
+            "omega_rad_s": omega,
+            "inertia_kg_m2": np.asarray(motion.machine.inertia(motion.rows(phi))),
+            "torque_motor_nm": driving,
+            "torque_load_nm": load,
+            **({"torque_lost_nm": lost} if np.any(lost) else {}),
+            "power_w": driving * omega,
+        }
+
+    @property
+    def _words(self) -> str:
+        """The run in words."""
+        return "the driver turns evenly" if self.motor is None else _WORDS[self.spec.run]
+
+    def findings(self) -> tuple[Finding, ...]:
+        """Return the findings of the motion."""
+        moving = MovingMachine(
+            motion=self.motion,
+            wanted=self.design.motor.irregularity if self.spec.run == REGIME else None,
+            tolerance=self.spec.tolerance,
+            place=self.place,
+        )
+        return run_checks(DYNAMICS, moving, self.design.limits)
+
+    def facts(self, columns: Mapping[str, Array]) -> Tree:
+        """Return the facts that all machines have.
+
+        Parameters
+        ----------
+        columns : mapping of str to (n,) array
+            See `columns`.
+        """
+        motion, spec = self.motion, self.spec
+        (slow_at, slow), (fast_at, fast) = motion.speeds
+        steady = spec.run == REGIME
+        works = dict(zip(("motor", "load", "lost"), motion.works, strict=True))
+        power = columns["power_w"]
+        worked = f"{formatted(works['motor'], 5)} J in, {formatted(works['load'], 5)} J on loads"
+        if works["lost"]:
+            worked += f", {formatted(works['lost'], 4)} J lost"
+        turn = "turn" if steady else "run"
+        whole = abs(motion.lasts) > 0.0 and motion.stopped is None
+        return {
+            "run": Fact(spec.run, "motion", text=self._words, shown=True),
+            "motor": Fact(self.design.motor.type, "motor", shown=True),
+            "speed_rpm": {"mean": _rpm(slow, "speed of the driver", "")}
+            if motion.motor is None
+            else {
+                "mean": _rpm(motion.mean_speed, "mean speed", "half of least and largest"),
+                "min": _rpm(slow, "least speed", self.place(slow_at)),
+                "max": _rpm(fast, "largest speed", self.place(fast_at)),
+            },
+            "irregularity": Fact(
+                motion.irregularity,
+                "irregularity, (max - min)/mean",
+                at_most=self.design.motor.irregularity,
+                unit="",
+                shown=True,
+            )
+            if steady and motion.motor is not None
+            else None,
+            "flywheel_kg_m2": self._flywheel(),
+            f"{turn}_s": Fact(
+                motion.lasts, f"time of a {turn}" if steady else "time", unit="s", shown=True
+            ),
+            "inertia_kg_m2": Fact(
+                extent(
+                    float(columns["inertia_kg_m2"].min()), float(columns["inertia_kg_m2"].max())
+                ),
+                "moment of inertia at the driver",
+                unit="kg m2",
+                shown=True,
+            ),
+            "torque_motor_nm": Fact(
+                extent(
+                    float(columns["torque_motor_nm"].min()), float(columns["torque_motor_nm"].max())
+                ),
+                "torque of the motor",
+                shown=True,
+            ),
+            "power_w": {
+                "mean": Fact(works["motor"] / motion.lasts, "mean power", unit="W", shown=True),
+                "peak": Fact(float(power.max()), "largest power", unit="W", shown=True),
+            }
+            if whole
+            else None,
+            "works_j": Fact(works, f"works of a {turn}", text=worked, unit="", shown=True),
+            "gained_j": motion.gained,
+            "stopped_deg": None if motion.stopped is None else math.degrees(motion.stopped),
+            "energy_residue": Fact(motion.residue, "works and energy balance to", unit=""),
+        }
+
+    def _flywheel(self) -> Fact | None:
+        """Return the flywheel as a fact."""
+        if not self.design.motor.flywheel:
+            return None
+        found = self.design.motor.flywheel == "solve"
+        label = "least flywheel for this irregularity" if found else "flywheel"
+        return Fact(self.flywheel, label, unit="kg m2", shown=True)
+
+    def charts(self, columns: Mapping[str, Array]) -> dict[str, Chart]:
+        """Return the charts that all machines have.
+
+        Parameters
+        ----------
+        columns : mapping of str to (n,) array
+            See `columns`.
+        """
+        torques = {
+            "motor": columns["torque_motor_nm"],
+            "loads, at the driver": columns["torque_load_nm"],
+        }
+        if "torque_lost_nm" in columns:
+            torques["losses"] = columns["torque_lost_nm"]
+        omega = columns["omega_rad_s" if "omega_rad_s" in columns else "omega1_rad_s"]
+        speed = {"speed": omega / RPM.factor}
+        inertia = {"moment of inertia": columns["inertia_kg_m2"]}
+        return {
+            "speed": self.chart(columns, "Speed of the driver", "speed, rpm", speed),
+            "torques": self.chart(columns, "Torques at the driver", "torque, N m", torques),
+            "inertia": self.chart(
+                columns, "Moment of inertia at the driver", "moment of inertia, kg m2", inertia
+            ),
+        }
+
+    def chart(
+        self, columns: Mapping[str, Array], title: str, y: str, lines: Mapping[str, Array]
+    ) -> Chart:
+        """Return a chart over the driver's angle.
+
+        Parameters
+        ----------
+        columns : mapping of str to (n,) array
+            See `columns`.
+        title, y : str
+            Its title and axis.
+        lines : mapping of str to (n,) array
+            Its lines by their labels.
+        """
+        x = columns[f"{self.symbol}_deg"]
+        marks = knot_marks(np.degrees(self.machine.knots), float(x[0]), float(x[-1]))
+        made = tuple(Line(label=label, x=x, y=values) for label, values in lines.items())
+        return Chart(title=title, x=self.axis, y=y, lines=made, marks=marks)
+
+
+def _rpm(omega: float, label: str, place: str) -> Fact:
+    return Fact(omega / RPM.factor, label, place=place, unit="rpm", shown=True)
+
+
+_WORDS: Final = {
+    REGIME: "the regime: the turn that repeats",
+    START: "from rest",
+    TURNS: "from the speed of the drive",
+    COAST: "coasting from the speed of the drive",
+}
+"""Runs in words."""

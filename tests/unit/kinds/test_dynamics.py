@@ -1,0 +1,173 @@
+"""The studies of machines in motion: the nail machine, pairs, and what they refuse."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gearcam as gc
+from gearcam.base.errors import DesignError, InfeasibleError
+
+RPM = math.pi / 30.0
+
+
+def study(name: str, changes: Any = None, /) -> Any:
+    design = gc.load(f"profiles/{name}.toml").with_(changes or {})
+    return gc.build(design).study("dynamics")
+
+
+@cache
+def nail(flywheel: Any) -> Any:
+    """Return the study of the nail machine with a flywheel."""
+    return study("nail_machine_flywheel", {"motor.flywheel_kg_m2": flywheel})
+
+
+@pytest.mark.parametrize(
+    ("flywheel", "least", "largest", "irregularity", "turn"),
+    [
+        (0, 18.138, 21.755, 0.1813, 0.32382),
+        (5, 18.219, 21.310, 0.1564, 0.32365),
+        (60, 18.920, 19.819, 0.0464, 0.32308),
+    ],
+)
+def test_the_nail_machine_runs_as_in_a_trial(flywheel, least, largest, irregularity, turn):
+    # with the ratio by single points and another integrator, of flywheels in kg m2
+    facts = nail(flywheel).facts
+    assert facts["dynamics.speed_rpm.min"] * RPM == pytest.approx(least, abs=1e-3)
+    assert facts["dynamics.speed_rpm.max"] * RPM == pytest.approx(largest, abs=1e-3)
+    assert facts["dynamics.irregularity"] == pytest.approx(irregularity, abs=1e-4)
+    assert facts["dynamics.turn_s"] == pytest.approx(turn, abs=1e-5)
+    assert facts["dynamics.energy_residue"] < 1e-7
+
+
+def test_the_least_flywheel_of_the_nail_machine_is_that_of_the_trial():
+    assert nail("solve").facts["dynamics.flywheel_kg_m2"] == pytest.approx(19.807, abs=1e-3)
+    assert nail("solve").facts["dynamics.irregularity"] == pytest.approx(0.1, rel=1e-8)
+    assert "irregularity" not in [one.code for one in nail("solve").study_findings]
+    found = {one.code: one for one in nail(5).study_findings}
+    assert found["irregularity"].limit == 0.1
+
+
+def test_at_an_even_speed_a_mechanism_needs_the_moment_of_its_study_of_torque():
+    changes = {"motor": {"type": "speed"}, "output.studies": []}
+    result = gc.build(gc.load("profiles/nail_machine_flywheel.toml").with_(changes))
+    dynamics, torque = result.study("dynamics"), result.study("torque")
+    found = dynamics.columns
+    mine, other = (one.columns["phi1_deg"] for one in (dynamics, torque))
+    _, a, b = np.intersect1d(mine, other, return_indices=True)
+    apart = np.abs(found["torque_motor_nm"][a] - torque.columns["torque_nm"][b])
+    assert np.sort(apart)[:-4].max() < 1e-8 * np.abs(found["torque_motor_nm"]).max()  # but at jumps
+    assert len(a) > 300
+    work = dynamics.facts["dynamics.works_j.motor"]
+    assert work == pytest.approx(torque.facts["torque.work_j"], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "changes"),
+    [
+        ("loaded_nail_machine", {}),
+        ("loaded_nail_machine", {"friction.rolling_mm": 0.02, "pair.backlash_mm": 0.0}),
+        ("ellipse", {"load": [{"on": "wheel2", "formula": "8 - 9*cos(phi1)"}]}),
+        ("stepped_ellipse", {"load": [{"on": "wheel2", "torque_nm": 12}], "friction.flank": 0.1}),
+        ("ring_uneven", {"load": [{"on": "wheel2", "formula": "0.5*omega2"}]}),
+    ],
+)
+def test_at_1_rpm_contact_forces_are_those_of_the_study_of_forces(name, changes):
+    own = {"dynamics.inertia_kg_m2": [1e-5, 1e-5], "drive.speed_rpm": 1, "output.studies": []}
+    result = gc.build(gc.load(f"profiles/{name}.toml").with_({**own, **changes}))
+    dynamics, forces = (result.study(one) for one in ("dynamics", "forces"))
+    for key in ("normal_n.min", "normal_n.max", "bearing_n.max", "pressure_mpa.max"):
+        mine, other = dynamics.facts[f"dynamics.{key}"], forces.facts[f"forces.{key}"]
+        largest = forces.facts[f"forces.{key.split('.')[0]}.max"]
+        assert abs(mine - other) < 1e-6 * largest, key
+    # works are those of the torques of the driver there
+    lost, work = (dynamics.facts[f"dynamics.works_j.{one}"] for one in ("lost", "load"))
+    efficiency = forces.facts.get("forces.efficiency.overall")
+    if efficiency is not None and not result.design.pair.backlash:
+        assert work / (work + lost) == pytest.approx(efficiency, abs=1e-3)
+
+
+def test_inertia_of_a_fast_pair_loads_its_teeth():
+    changes = {"dynamics.inertia_kg_m2": [0.0, 0.2], "drive.speed_rpm": 600, "blank": {}}
+    result = gc.build(gc.load("profiles/ellipse.toml").with_(changes))
+    found = result.study("dynamics")
+    columns = found.columns
+    # without a load the teeth carry J2*alpha2, the derivative of the driven speed
+    alpha = np.gradient(columns["omega2_rad_s"], columns["t_s"])[2:-2]
+    assert (
+        np.abs(columns["torque_mesh_nm"][2:-2] - 0.2 * alpha).max()
+        < 0.02 * np.abs(0.2 * alpha).max()
+    )
+    assert "torque-reversal" in [one.code for one in found.study_findings]
+
+
+def test_wheels_have_their_own_inertia_where_they_have_a_density():
+    changes = {"blank.density_kg_m3": 7850, "drive.speed_rpm": 100}
+    result = gc.build(gc.load("profiles/ellipse.toml").with_(changes))
+    low = result.study("dynamics").facts["dynamics.inertia_kg_m2.min"]
+    own = [1e-6 * one["mass"]["inertia_kg_mm2"] for one in result.facts["gears"]]
+    ratio = result.study("dynamics").columns
+    least = (ratio["omega2_rad_s"] / ratio["omega1_rad_s"]).min()
+    assert low == pytest.approx(own[0] + own[1] * least**2, rel=1e-6)
+
+
+PAIR = {"dynamics.inertia_kg_m2": 0.2}
+LINEAR = {"type": "linear", "start_torque_nm": 20000, "idle_rpm": 190}
+
+
+@pytest.mark.parametrize(
+    ("changes", "key", "words"),
+    [
+        ({"drive": {}}, "drive.speed_rpm", "speed of the driver"),
+        ({"dynamics": {}, "motor": LINEAR}, "dynamics.inertia_kg_m2", "density"),
+        ({"motor.type": "none"}, "motor.type", "no regime"),
+        ({"motor": {"type": "constant", "torque_nm": 5}}, "motor.torque_nm", "no regime"),
+        ({"motor.type": "linear"}, "motor.start_torque_nm", "missing"),
+        ({"motor": {**LINEAR, "breakdown_slip": 0.1}}, "motor.breakdown_slip", "does not apply"),
+        ({"motor": {**LINEAR, "flywheel_kg_m2": "solve"}}, "motor.irregularity", "missing"),
+        ({"dynamics.run": "start"}, "dynamics.run", "does not start"),
+        ({"load[0].on": "wheel1"}, "load[0].on", "motor"),
+    ],
+)
+def test_what_cannot_run_is_refused_by_its_key(changes, key, words):
+    with pytest.raises(DesignError) as caught:
+        study("loaded_nail_machine", {**PAIR, **changes})
+    assert caught.value.problems[0].key == key
+    assert words in str(caught.value)
+
+
+def test_a_travel_has_no_regime_but_starts_and_runs_once():
+    open_pair = {"dynamics.inertia_kg_m2": 0.2, "motor": LINEAR}
+    with pytest.raises(DesignError, match="travel has none"):
+        study("log_spiral", open_pair)
+    with pytest.raises(DesignError, match="no turns"):
+        study("log_spiral", {**open_pair, "dynamics.run": "start", "dynamics.turns": 2})
+    found = study("log_spiral", {**open_pair, "dynamics.run": "start"})
+    assert found.columns["phi1_deg"][-1] == pytest.approx(
+        math.degrees(found.result.turn(1)[-1]), rel=1e-9
+    )
+
+
+def test_a_table_that_ends_below_the_speed_is_refused_with_both_speeds():
+    motor = {"type": "table", "torque_nm": [9000, 3000, 2900], "rpm": [0, 50, 60]}
+    with pytest.raises(InfeasibleError, match="does not reach") as caught:
+        study("loaded_nail_machine", {**PAIR, "motor": motor})
+    assert caught.value.limit == 60.0
+    assert caught.value.value > 200.0
+    rows = {"torque_nm": [9000, 3000, 100, -900], "rpm": [0, 50, 300, 400]}
+    assert study("loaded_nail_machine", {**PAIR, "motor": {**motor, **rows}}).complete
+
+
+def test_coasting_ends_where_the_energy_does():
+    changes = {"dynamics.run": "coast", "dynamics.turns": 1000, "load": [], "friction": {}}
+    load = [{"on": "wheel2", "torque_nm": 2.0}]
+    found = study("loaded_nail_machine", {**PAIR, **changes, "load": load, "drive.speed_rpm": 60})
+    result = found.result
+    energy = 0.1 * (60 * RPM) ** 2 * (1.0 + result.law.ratio(np.zeros(1))[0] ** 2)
+    stopped = math.radians(found.facts["dynamics.stopped_deg"])
+    assert 2.0 * result.law.phi2(np.array([stopped]))[0] == pytest.approx(energy, rel=1e-6)
+    assert [one.severity for one in found.study_findings if one.code == "stalls"] == ["note"]
