@@ -8,5 +8,5 @@ lags. A *follower* of a cam has one or two masses on springs; the cam turns even
 Everything is integrated over the driver's angle, so that each knot of a law or a load is met
 exactly; the time is part of the state. SI here: rad, s, kg m2, N m; lifts of followers in mm.
 
-Depends on mechanics and numeric; scipy where something is integrated.
+Depends on meshing, mechanics and numeric; scipy where something is integrated.
 """

@@ -445,7 +445,7 @@ def _root(function: Callable[[float], float], low: float, high: float) -> float:
         low,
         high,
         xtol=4e-16 * max(abs(low), abs(high), 1e-300),
-        rtol=8.9e-16,
+        rtol=np.float64(8.9e-16),
         full_output=True,
     )
     return float(found)

@@ -138,9 +138,19 @@ class Comparison:
         return {name: trial.run(method, rtol) for name, trial in self.trials.items()}
 
     def error(self, name: str, run: StiffRun) -> float:
-        """Return the error of a `run` of the trial `name`.
+        """Return the error of a motion.
 
-        In the mean square of its lag, over its largest lag.
+        Parameters
+        ----------
+        name : str
+            Of the trial.
+        run : StiffRun
+            Its motion.
+
+        Returns
+        -------
+        float
+            In the mean square of the lag, over the largest lag.
         """
         true = self._true[name]
         missed = self.trials[name].lags(run) - true
