@@ -117,6 +117,25 @@ def test_motions_follow_each_other() -> None:
     assert both.steps > first.steps
 
 
+def test_a_stiff_mode_begins_with_steps_of_its_own() -> None:
+    """From rest nothing tells how fast a spring is, nor does the flight before it."""
+    seen: list[float] = []
+
+    def hard(x: float, y: Any) -> Sequence[float]:
+        seen.append(x)
+        return [float(y[1]), -1e8 * (float(y[0]) - 1.0)]
+
+    hits = Switch(lambda _, y: float(y[0]), "spring", 1e-12)
+    spring = Mode(hard, pace=lambda *_: 1e4)
+    modes = {"flight": Mode(fall, (hits,)), "spring": spring}
+    integrator()(modes, ("spring", [1.0, 1e-9]), [0.0, 1.0], keep=2.0)
+    assert max(seen[:13]) <= 1e-4
+    seen.clear()
+    integrator()(modes, ("flight", [0.5, 0.0]), [0.0, 1.01], keep=2.0)
+    assert 1.0 <= min(seen)
+    assert max(seen[:13]) <= 1.0 + 1.1e-4
+
+
 class Steps:
     """An integrator that makes steps of a length for so many evaluations."""
 
