@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache, partial
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Final
 
+from gearcam.base.errors import MissingExtraError
 from gearcam.results.ladders import Ladder, Ladders
 
 if TYPE_CHECKING:
@@ -39,7 +41,15 @@ class MethodLadder:
         return design.dynamics.elastic
 
     def __call__(self, _: GearPairResult) -> Ladder:
-        """Return the ladder."""
+        """Return the ladder.
+
+        Raises
+        ------
+        MissingExtraError
+            If scipy is not installed.
+        """
+        if not find_spec("scipy"):
+            raise MissingExtraError("dynamics", "dynamics")
         from gearcam.dynamics.trials import ORDERS
 
         compared = _comparison()
