@@ -31,7 +31,7 @@ _SETTLED: Final = 40
 _WINDOW: Final = 20
 """Steps over which its work is looked at."""
 
-_WEIGHT: Final = 1.8
+_WEIGHT: Final = 1.3
 """Time of an evaluation in LSODA, with all that belongs to it, over that in DOP853."""
 
 

@@ -90,8 +90,6 @@ class Mode(ShortRepr):
         ``rate(x, y)`` returns the derivatives of the state, as a list of floats.
     switches : tuple of Switch
         Its ends.
-    jacobian : callable or None
-        ``jacobian(x, y)``, (m, m): derivatives of the rates by the state; None: by differences.
     pace : callable or None
         ``pace(x, y)``: size of the largest eigenvalue, a natural frequency in most cases, per unit
         of x; None if nothing is stiff.
@@ -101,7 +99,6 @@ class Mode(ShortRepr):
 
     rate: Rate
     switches: tuple[Switch, ...] = ()
-    jacobian: Callable[[float, Any], Sequence[Sequence[float]]] | None = None
     pace: Callable[[float, Any], float] | None = None
     last: bool = False
 
@@ -329,9 +326,8 @@ class _Run:
         given, method = self._integrator, self._choice.method if self._choice else None
         method = method or given.method
         width = None if self._width is None else min(self._width, end - x)
-        jacobian = {} if method == "dop853" else {"jac": mode.jacobian}
         return self._made[method](
-            mode.rate, x, y, end, rtol=given.rtol, atol=given.atol, first_step=width, **jacobian
+            mode.rate, x, y, end, rtol=given.rtol, atol=given.atol, first_step=width
         )
 
     def _kept(self, solver: Any, name: str, mode: Mode) -> tuple[float, Array, str] | None:

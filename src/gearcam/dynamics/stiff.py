@@ -241,41 +241,6 @@ class StiffPair(ShortRepr):
                 0.0,
             ]
 
-        def jacobian(x: float, y: Any) -> list[list[float]]:
-            rate = touching(x, y)
-            _, w, e, v, _, _, _ = y.tolist()
-            w = max(w + speed, floor)
-            i, di, k, dk, b, db, *rubs = table(x)
-            g, moved, r, w2 = e - half * b, half * db, 1.0 / w, i * w - v
-            closing = v - moved * w
-            kappa = rubs[1 if k * g + c * closing < 0.0 else 0] if rubs else i
-            step = _DIFFERENCE * w
-            dm1 = (motor(x, w + step) - motor(x, w)) / step
-            m2 = load(x, w2)
-            dm2 = (load(x, w2 + step) - m2) / step
-            # columns w1, e, e'; the time and works do not act back
-            dq = -c * moved, k, c
-            a1 = [
-                (one - (kappa - moved) * q) / j1
-                for one, q in zip((dm1, -dk * g, 0.0), dq, strict=True)
-            ]
-            a2 = [(q - one) / j2 for one, q in zip((i * dm2, 0.0, -dm2), dq, strict=True)]
-            slip = [i * one - two for one, two in zip(a1, a2, strict=True)]
-            slip[0] += 2.0 * di * w
-            lost = [(kappa - i) * q for q in dq]
-            lost[0] -= c * closing * (closing * r + 2.0 * moved) * r
-            lost[2] += 2.0 * c * closing * r
-            rows = (
-                (-r * r, 0.0, 0.0),
-                ((a1[0] - rate[1]) * r, a1[1] * r, a1[2] * r),
-                (-v * r * r, 0.0, r),
-                ((slip[0] - rate[3]) * r, slip[1] * r, slip[2] * r),
-                (dm1, 0.0, 0.0),
-                ((i * (m2 + w2 * dm2) - m2 * w2 * r) * r, 0.0, -(m2 + w2 * dm2) * r),
-                lost,
-            )
-            return [[0.0, *row, 0.0, 0.0, 0.0] for row in rows]
-
         def pace(x: float, y: Any) -> float:
             w = max(float(y[1]) + speed, floor)
             i, _, k = table(x)[:3]
@@ -286,7 +251,7 @@ class StiffPair(ShortRepr):
             return max(math.sqrt(k * softness), c * softness, by_motor, by_load) / w
 
         if touches:
-            return Mode(touching, switches, jacobian, pace)
+            return Mode(touching, switches, pace)
         return Mode(apart, switches)
 
     def _scales(self, start: StiffState) -> tuple[float, ...]:

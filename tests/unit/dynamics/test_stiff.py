@@ -304,34 +304,6 @@ def test_loads_that_jump_are_met_at_their_knots():
     assert 2.0 in places
 
 
-@pytest.mark.parametrize("sign", [0.0, 1.0, -1.0])
-def test_the_jacobian_is_that_of_differences(sign):
-    play = 0.0 if sign == 0.0 else PLAYED
-
-    def functions(x: np.ndarray) -> list:
-        i, slope = 1.0 + 0.4 * np.cos(x), -0.4 * np.sin(x)
-        return [i, slope, K * i, K * slope, play * i, play * slope, 1.1 * i, 0.9 * i]
-
-    made = pair(
-        functions,
-        damping=50.0,
-        motor=lambda _, w: 20.0 - w * w,
-        load=lambda x, w: 3.0 * w * w + math.sin(x),
-    )
-    names = {0.0: "mesh", 1.0: DRIVE, -1.0: COAST}
-    mode = made._modes(W)[names[sign]]
-    y = np.array([0.1, 1.0, (sign or 1.0) * 3.0 * PLAYED, 0.4, 1.0, 2.0, 3.0])
-    scale = np.array([1.0, 1.0, 1e-4, 1.0, 1.0, 1.0, 1.0])
-    assert mode.jacobian is not None
-    found = np.array(mode.jacobian(0.3, y))
-    for column, size in enumerate(scale):
-        more, less = y.copy(), y.copy()
-        more[column] += 1e-4 * size
-        less[column] -= 1e-4 * size
-        wanted = np.subtract(mode.rate(0.3, more), mode.rate(0.3, less)) / (2e-4 * size)
-        assert found[:, column] == pytest.approx(wanted, rel=1e-6, abs=1e-5)
-
-
 def test_too_many_natural_periods_are_refused_and_run_times_foretold():
     made = even()
     start = StiffState(0.0, W, 0.0)
@@ -344,7 +316,7 @@ def test_too_many_natural_periods_are_refused_and_run_times_foretold():
     assert 3.0 < long / short < 30.0
 
 
-WEIGHTS = {"auto": 1.8, "dop853": 1.0, "lsoda": 1.8, "radau": 3.5}
+WEIGHTS = {"auto": 1.3, "dop853": 1.0, "lsoda": 1.3, "radau": 3.5}
 """Times of an evaluation with all that belongs to it, over that in DOP853 (measured). BDF is behind
 everywhere."""
 
