@@ -22,6 +22,7 @@ from gearcam.dynamics.rigid import RigidMotion, RigidRun
 from gearcam.dynamics.settings import COAST, DYNAMICS, REGIME, START, TURNS
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Line, knot_marks
+from gearcam.pictures.scenes import PLACES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -281,6 +282,18 @@ class MachineRun(ShortRepr):
         turns = (high - low) / self.machine.period
         count = max(2, min(_ROWS, math.ceil(turns * self.spec.steps) + 1))
         return with_both_sides(np.linspace(low, high, count), self.motion.knots)
+
+    @property
+    def pace(self) -> Array | None:
+        """Angles of the driver, degrees, and the time, s, of a turn that repeats or a whole travel.
+
+        None of other motions, (n, 2) otherwise.
+        """
+        once = self.spec.run == REGIME or not self.machine.closed
+        if not once or self.motion.stopped is not None:
+            return None
+        phi = np.linspace(*self.motion.ends, PLACES + 1)
+        return np.stack([np.degrees(phi), self.motion.time(phi)], axis=1)
 
     def columns(self) -> dict[str, Array]:
         """Return the columns of ``dynamics.csv`` that all machines have."""

@@ -157,6 +157,8 @@ class Scene(ShortRepr):
         Forces drawn as arrows, all to one scale.
     coloured : tuple of ColouredCurve
         Curves that the reader can have coloured; those of one quantity share a scale.
+    times : (n,) array, s, optional
+        The time at each place, increasing, where the driver need not turn evenly.
     in_space : mapping of str to SpacePose
         By name, the n poses of solids that do not move as the body of their name; no turn jumps.
     eye : tuple of 3 floats
@@ -175,6 +177,7 @@ class Scene(ShortRepr):
     pitch: Plane | None = None
     forces: tuple[JointForce, ...] = ()
     coloured: tuple[ColouredCurve, ...] = ()
+    times: Array | None = None
     in_space: Mapping[str, SpacePose] = field(default_factory=dict)
     eye: tuple[float, float, float] = (0.3, -0.7, 1.0)
     up: tuple[float, float, float] = (0.0, 1.0, 0.0)
@@ -192,6 +195,10 @@ class Scene(ShortRepr):
         for one in self.forces:
             if not np.shape(one.point) == np.shape(one.force) == self.places.shape:
                 raise ValueError(f"{one.name}: needs a force for each place of the driver")
+        if self.times is not None and (
+            self.times.shape != self.places.shape or not np.all(np.diff(self.times) > 0.0)
+        ):
+            raise ValueError("times: needs a later one for each place of the driver")
 
 
 def still(features: tuple[Feature, ...], places: Array) -> MovingBody:

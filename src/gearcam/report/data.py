@@ -37,6 +37,9 @@ _RAD: Final = 7
 _SHARE: Final = 4
 """Decimals of shares of a force."""
 
+_OF_TIME: Final = 9
+"""Significant digits of the last time of a scene: between all places some time passes."""
+
 _DIGITS: Final = 6
 """Significant digits of the largest value of a chart; the others have as many decimals, or as many
 digits on a logarithmic axis."""
@@ -66,7 +69,7 @@ def scene_data(scene: Scene) -> dict[str, Any]:
         ``x`` and ``y`` in the body's frame); ``coloured``, each with
         ``body``, ``points`` and ``values`` by label; ``scales`` by label, each with
         ``least``, ``largest``, and where that is: ``place`` of the driver, ``body``, ``x`` and
-        ``y`` on it; ``solids`` by name, those that do not move as the
+        ``y`` on it; ``times``, seconds from the first place, or null; ``solids`` by name, those that do not move as the
         body of their name: each with ``axis``, ``turn``, ``x``, ``y`` and ``z``; ``eye`` and
         ``up``, directions of the first view of solids.
     """
@@ -87,6 +90,7 @@ def scene_data(scene: Scene) -> dict[str, Any]:
         "largest_force": formatted(largest) if largest else None,
         "coloured": [_coloured(one) for one in scene.coloured],
         "scales": {name: _scale(name, scene.coloured) for name in names},
+        "times": None if scene.times is None else _digits(scene.times - scene.times[0], _OF_TIME),
         "solids": {name: _solid(pose) for name, pose in scene.in_space.items()},
         "eye": list(scene.eye),
         "up": list(scene.up),
@@ -233,11 +237,11 @@ def _flat(points: Plane) -> list[float | None]:
     return _rounded(as_pairs(points).ravel(), _MM)
 
 
-def _digits(values: Array) -> list[float | None]:
+def _digits(values: Array, digits: int = _DIGITS) -> list[float | None]:
     """Return values, rounded to the decimals that the largest needs."""
     sizes = np.abs(values[np.isfinite(values)])
     size = float(sizes.max(initial=0.0))
-    return _rounded(values, _DIGITS - math.ceil(math.log10(size)) if size else 0)
+    return _rounded(values, digits - math.ceil(math.log10(size)) if size else 0)
 
 
 def _significant(values: Array) -> list[float | None]:

@@ -109,7 +109,7 @@ const stepwise = () => still.matches && !element("animate").checked;
 
 function play(on) {
   if (on && stepwise()) {
-    advance((page.scene.places.at(-1) - page.scene.places[0]) / STRIDES);
+    advance(1 / STRIDES);
     redraw();
     return;
   }
@@ -127,25 +127,38 @@ function name() {
 
 function tick(now, before) {
   if (!page.playing) return;
-  const { places } = page.scene;
   const seconds = Math.min(0.1, (now - before) / 1000); // no jump after a pause of the page
-  advance((seconds * element("speed").value * (places.at(-1) - places[0])) / CYCLE);
+  advance((seconds * element("speed").value) / CYCLE);
   draw();
   requestAnimationFrame((next) => tick(next, now));
 }
 
-// Closed cycles repeat; open ones reverse at their ends.
-function advance(way) {
+// What goes on evenly while the parts play: the time of the motion, or the place itself.
+const clock = () => (element("true").checked && page.scene.times) || page.scene.places;
+
+// Play a share of a cycle. Closed cycles repeat; open ones reverse at their ends, or begin again if
+// their time is known, which holds one way only.
+function advance(share) {
   const { places, closed } = page.scene;
-  const [first, last] = [places[0], places.at(-1)];
-  page.place += closed ? way : page.forth * way;
-  if (closed && page.place > last) {
-    page.place -= last - first;
-    page.cycles += 1;
-  } else if (!closed && (page.place > last || page.place < first)) {
-    page.forth = page.place > last ? -1 : 1;
-    page.place = Math.min(last, Math.max(first, page.place));
+  const hands = clock();
+  const [first, last] = [hands[0], hands.at(-1)];
+  const again = closed || hands !== places;
+  let now = between(hands, spotOf(places, page.place));
+  now += (again ? 1 : page.forth) * share * (last - first);
+  if (again && now > last) {
+    now -= last - first;
+    page.cycles += Number(closed);
+  } else if (now > last || now < first) {
+    page.forth = now > last ? -1 : 1;
   }
+  page.place = between(places, spotOf(hands, now));
+}
+
+// How much slower or faster than the machine the parts play; empty where this is not told.
+function factor() {
+  const lasts = clock() === page.scene.times ? page.scene.times.at(-1) : 0;
+  const seconds = Number(((lasts * element("speed").value) / CYCLE).toPrecision(3));
+  element("factor").textContent = lasts ? `1 s of the picture is ${seconds} s` : "";
 }
 
 // --- controls ------------------------------------------------------------------------------------
@@ -269,6 +282,7 @@ function listen() {
   element("parts").addEventListener("keydown", key);
   element("play").addEventListener("click", () => play(!page.playing));
   element("animate").addEventListener("change", name);
+  for (const id of ["speed", "true"]) element(id).addEventListener("change", factor);
   element("fit").addEventListener("click", fit);
   element("mesh").addEventListener("click", () => {
     if (parts.following) parts.fit();
@@ -338,8 +352,10 @@ function present(whole) {
   if (whole) {
     offer();
     colourings();
+    element("pace").hidden = !scene.times;
   }
   legend();
+  factor();
   element("place").max = scene.places.length - 1;
   page.place = Math.min(scene.places.at(-1), Math.max(scene.places[0], page.place));
   draw();

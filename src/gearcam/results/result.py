@@ -13,6 +13,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 
+import numpy as np
+
 from gearcam.base.display import renderer
 from gearcam.base.errors import GearcamError
 from gearcam.base.facts import Facts
@@ -390,7 +392,9 @@ class Result(Staged):
         }
         forces = tuple(force for one in studies for force in one.joints(scene))
         coloured = (*scene.coloured, *curves)
-        return replace(scene, contacts=contacts, coloured=coloured, forces=forces)
+        paces = [one.pace for one in studies if one.pace is not None]
+        times = np.interp(scene.places, *paces[0].T) if paces else None
+        return replace(scene, contacts=contacts, coloured=coloured, forces=forces, times=times)
 
     def check(self, directory: str | Path = "output") -> BuildOutput:
         """Run the checks and write the summary only; the files of an earlier build are kept.

@@ -20,6 +20,7 @@ from gearcam.results.staged import Staged
 from gearcam.results.written import BuildOutput
 
 if TYPE_CHECKING:
+    from gearcam.numeric.arrays import Array
     from gearcam.pictures.charts import Chart
     from gearcam.pictures.scenes import ColouredCurve, ContactPoints, JointForce, Scene
 
@@ -83,6 +84,9 @@ class StudyResult(NotebookView):
         ``joints(scene)`` returns forces in joints for the moving picture.
     coloured : callable
         ``coloured()`` returns curves of the moving picture with values along them.
+    pace : (n, 2) array or None
+        Places of the driver over a cycle, in the unit of the moving picture, increasing, and the
+        time at each, s: the motion that this picture can follow.
     pages : mapping of str to bytes
         Files beside the table, by name.
     lines : tuple of str
@@ -108,6 +112,7 @@ class StudyResult(NotebookView):
     overlay: Callable[[Scene], Mapping[str, ContactPoints]] = _nothing
     joints: Callable[[Scene], Iterable[JointForce]] = _no_forces
     coloured: Callable[[], Iterable[ColouredCurve]] = tuple
+    pace: Array | None = None
     pages: Mapping[str, bytes] = field(default_factory=dict)
     lines: tuple[str, ...] = ()
     interrupted: str = ""

@@ -115,6 +115,37 @@ def test_wheels_have_their_own_inertia_where_they_have_a_density():
     assert low == pytest.approx(own[0] + own[1] * least**2, rel=1e-6)
 
 
+def test_a_travel_is_made_from_rest_without_loss():
+    motor = {"type": "constant", "torque_nm": 3}
+    changes = {"motor": motor, "dynamics": {"run": "start", "inertia_kg_m2": [0.01, 0.02]}}
+    found = study("log_spiral", changes)
+    columns = found.columns
+    energy = 0.5 * (0.01 * columns["omega1_rad_s"] ** 2 + 0.02 * columns["omega2_rad_s"] ** 2)
+    assert energy == pytest.approx(3.0 * np.radians(columns["phi1_deg"]), rel=1e-6)
+    # of an even torque, E = M*phi, the time by a substitution without the root at the start
+    x = np.linspace(0.0, math.sqrt(math.radians(columns["phi1_deg"][-1])), 20001)
+    ratio = columns["omega2_rad_s"] / columns["omega1_rad_s"]
+    inertia = 0.01 + 0.02 * np.interp(np.degrees(x**2), columns["phi1_deg"], ratio) ** 2
+    lasts = np.trapezoid(2.0 * np.sqrt(0.5 * inertia / 3.0), x)
+    assert found.facts["dynamics.run_s"] == pytest.approx(lasts, rel=1e-4)
+
+
+def test_a_turn_that_repeats_or_a_whole_travel_has_a_pace():
+    found = nail(0)
+    place, time = found.pace.T
+    assert (place[0], place[-1]) == pytest.approx((0.0, 360.0))
+    assert time[-1] - time[0] == pytest.approx(found.facts["dynamics.turn_s"], rel=1e-12)
+    omega = np.interp(place, found.columns["phi1_deg"], found.columns["omega_rad_s"])
+    mean = np.radians(np.diff(place)) / np.diff(time)
+    assert mean == pytest.approx(0.5 * (omega[1:] + omega[:-1]), rel=5e-3)  # force jumps
+    motor = {"type": "linear", "start_torque_nm": 3, "idle_rpm": 60}
+    run = {"run": "start", "inertia_kg_m2": [0.01, 0.01]}
+    assert study("log_spiral", {"motor": motor, "dynamics": run}).pace is not None
+    assert study("ellipse", {"motor": motor, "dynamics": run}).pace is None
+    against = {"load": [{"on": "wheel2", "torque_nm": 100}], "output.files": ["csv"]}
+    assert study("log_spiral", {"motor": motor, "dynamics": run, **against}).pace is None
+
+
 PAIR = {"dynamics.inertia_kg_m2": 0.2}
 LINEAR = {"type": "linear", "start_torque_nm": 20000, "idle_rpm": 190}
 

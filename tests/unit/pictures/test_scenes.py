@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import tomllib
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -402,3 +403,12 @@ def test_nothing_leaves_the_box_and_little_is_left_empty(name):
     assert every.imag.max() <= top + room
     assert np.ptp(every.real) > 0.9 * (right - left)
     assert np.ptp(every.imag) > 0.9 * (top - bottom)
+
+
+def test_a_scene_has_the_time_at_its_places_if_it_rises_there():
+    found = scene(made("ellipse"))
+    rising = np.linspace(0.0, 2.0, len(found.places))
+    assert replace(found, times=rising).times is rising
+    for wrong in (rising[1:], rising[::-1]):
+        with pytest.raises(ValueError, match="a later one for each place"):
+            replace(found, times=wrong)

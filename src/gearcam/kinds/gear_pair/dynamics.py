@@ -217,7 +217,8 @@ class MovingPair(PairUnderLoad):
 
     def _given(self, phi1: Array) -> Array:
         """Return the torque of the teeth on the driven wheel, N mm."""
-        return _KILO * mesh_torque(self._motion, phi1)
+        begun = np.maximum(phi1, self._motion.ends[0])  # a little after the first angle from rest
+        return _KILO * mesh_torque(self._motion, begun)
 
 
 def mesh_torque(motion: RigidMotion, phi1: Array) -> Array:
@@ -361,4 +362,5 @@ def study_dynamics(result: GearPairResult, progress: Progress) -> StudyResult:
         group=run.facts(columns),
         study_findings=findings,
         drawn=partial(run.charts, columns),
+        pace=run.pace,
     )

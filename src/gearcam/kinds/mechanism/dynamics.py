@@ -123,4 +123,5 @@ def study_dynamics(result: MechanismResult, progress: Progress) -> StudyResult:
         group=facts,
         study_findings=findings,
         drawn=partial(run.charts, columns),
+        pace=run.pace,
     )
