@@ -35,9 +35,7 @@ SECTIONS = {
     "lock": ["--group", "lock"],
 }
 TOOLS = ["--group", "install", "--group", "test"]
-_MORE = [
-    word for name in ("sweep", "optimize", "stress", "dynamics") for word in ("--extra", name)
-]
+_MORE = [word for name in ("sweep", "optimize", "stress", "dynamics") for word in ("--extra", name)]
 HEAD = """\
 # Written by `make lock`; installed by the Makefile, section by section.
 """

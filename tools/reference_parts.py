@@ -31,6 +31,7 @@ GROUPS: Final = {
     "forces of a pair": "Forces (`gearcam forces`)",
     "stress of a pair": "Stress (`gearcam stress`)",
     "dynamics of a machine": "Motion under a motor (`gearcam dynamics`)",
+    "vibration of teeth": "Elastic teeth in motion (`gearcam dynamics`)",
     "forces of a pair in motion": "Forces of teeth in motion (`gearcam dynamics`)",
     "parts": "Parts",
     "cams": "Motion and profile",

@@ -125,12 +125,13 @@ class PairMachine(Machine):
         """Return its derivative."""
         return 2.0 * self.driven * row[0] * row[1]
 
-    def _driven_load(self, row: Any, omega: Any) -> Any:
+    def driven_load(self, row: Any, omega: Any) -> Any:
+        """Return the load on the driven wheel, N m, at speeds of the driver, rad/s."""
         return self.share * polynomial(row[4 if self.rubs else 2 :], omega)
 
     def load(self, row: Any, omega: Any) -> Any:
         """Return the load at the driver."""
-        return row[0] * self._driven_load(row, omega)
+        return row[0] * self.driven_load(row, omega)
 
     def mesh_torque(self, row: Any, omega: Any, driving: Any) -> tuple[Any, Any]:
         """Return the torque of the teeth on the driven wheel, N m, and ``kappa - i``.
@@ -140,7 +141,7 @@ class PairMachine(Machine):
         row, omega, driving
             See `resistance`.
         """
-        ratio, load = row[0], self._driven_load(row, omega)
+        ratio, load = row[0], self.driven_load(row, omega)
         carried = load + self.driven * row[1] * omega * omega
         if driving is not None:
             driver = self.driver + self.flywheel

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from gearcam.dynamics.machine import Machine
+    from gearcam.dynamics.motion import MachineMotion
     from gearcam.dynamics.motors import Motor
     from gearcam.dynamics.settings import DynamicsSpec
     from gearcam.mechanics.motor import MotorSpec
@@ -203,9 +204,14 @@ class MachineRun(ShortRepr):
         """The flywheel, given or found, kg m2."""
         return self._found[0]
 
+    @property
+    def motion(self) -> MachineMotion:
+        """The motion that is shown."""
+        return self.rigid
+
     @cached_property
-    def motion(self) -> RigidMotion:
-        """The motion; a regime is that of one turn.
+    def rigid(self) -> RigidMotion:
+        """The motion with rigid members; a regime is that of one turn.
 
         Raises
         ------
@@ -291,7 +297,7 @@ class MachineRun(ShortRepr):
             "t_s": motion.time(phi),
             f"{self.symbol}_deg": np.degrees(phi),
             "omega_rad_s": omega,
-            "inertia_kg_m2": np.asarray(motion.machine.inertia(motion.rows(phi))),
+            "inertia_kg_m2": np.asarray(motion.machine.inertia(motion.machine.rows.at(phi))),
             "torque_motor_nm": driving,
             "torque_load_nm": load,
             **({"torque_lost_nm": lost} if np.any(lost) else {}),

@@ -27,7 +27,8 @@ from gearcam.numeric.roots import bracketed_root
 from gearcam.results.study import StudyResult
 
 if TYPE_CHECKING:
-    from gearcam.dynamics.rigid import RigidMotion
+    from collections.abc import Callable
+
     from gearcam.gears.contact import FlankPairs
     from gearcam.kinds.gear_pair.result import GearPairResult
     from gearcam.meshing.force_checks import LoadedPair
@@ -207,25 +208,17 @@ class MovingPair(PairUnderLoad):
     ----------
     result : GearPairResult
         The pair.
-    motion : RigidMotion
-        Its motion, of a turn or travel.
+    torque : callable
+        ``torque(phi1)``: of the teeth on the driven wheel, N m, at driver angles (n,).
     """
 
-    def __init__(self, result: GearPairResult, motion: RigidMotion) -> None:
+    def __init__(self, result: GearPairResult, torque: Callable[[Array], Array]) -> None:
         super().__init__(result)
-        self._motion = motion
+        self._torque = torque
 
     def _given(self, phi1: Array) -> Array:
         """Return the torque of the teeth on the driven wheel, N mm."""
-        return _KILO * mesh_torque(self._motion, phi1)
-
-
-def mesh_torque(motion: RigidMotion, phi1: Array) -> Array:
-    """Return the torque of the teeth on the driven wheel at driver angles, (n,), N m."""
-    machine, row, omega = motion.machine, motion.rows(phi1), motion.speed(phi1)
-    if not isinstance(machine, PairMachine):
-        raise TypeError("not a pair")
-    return np.asarray(machine.mesh_torque(row, omega, motion.driving(phi1, omega))[0])
+        return _KILO * self._torque(phi1)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -239,18 +232,22 @@ class PairRun(MachineRun):
     """
 
     result: GearPairResult
+    machine: PairMachine
 
-    @cached_property
-    def moving(self) -> MovingPair:
-        """The pair with the torque of its teeth."""
-        return MovingPair(self.result, self.motion)
+    def mesh_torque(self, phi1: Array) -> Array:
+        """Return the torque of the teeth on the driven wheel at driver angles, (n,), N m."""
+        motion = self.rigid
+        row, omega = motion.rows(phi1), motion.speed(phi1)
+        machine = self.machine.with_flywheel(self.flywheel)
+        return np.asarray(machine.mesh_torque(row, omega, motion.driving(phi1, omega))[0])
 
     @cached_property
     def loaded(self) -> LoadedPair:
         """The forces of the teeth at the places of the table; of one turn also where most."""
         phi1, once = self.places, len(self.motion.knots) <= len(self.machine.knots)
+        moving = MovingPair(self.result, self.mesh_torque)
         whole = once and self.motion.stopped is None
-        return self.moving.loaded(np.union1d(phi1, self.moving.places()) if whole else phi1)
+        return moving.loaded(np.union1d(phi1, moving.places()) if whole else phi1)
 
     def columns(self) -> dict[str, Array]:
         """Return the columns of ``dynamics.csv``."""
@@ -266,7 +263,7 @@ class PairRun(MachineRun):
             "omega1_rad_s": omega,
             "omega2_rad_s": ratio * omega,
             **columns,
-            "torque_mesh_nm": mesh_torque(self.motion, phi1),
+            "torque_mesh_nm": self.mesh_torque(phi1),
             "normal_n": np.ma.masked_invalid(tooth),
         }
 
@@ -340,15 +337,21 @@ def study_dynamics(result: GearPairResult, progress: Progress) -> StudyResult:
     _ = under.sides  # timed separately
     with result.stage("machine"):
         machine = machine_of(under, inertia, usual_speed(design.motor, design.drive.speed))
-    run = PairRun(
-        machine=machine,
-        design=design,
-        speed=design.drive.speed,
-        place=angle_text,
-        axis=DRIVER,
-        symbol="phi1",
-        result=result,
-    )
+    settings: dict[str, Any] = {
+        "machine": machine,
+        "design": design,
+        "speed": design.drive.speed,
+        "place": angle_text,
+        "axis": DRIVER,
+        "symbol": "phi1",
+        "result": result,
+    }
+    if design.dynamics.elastic:
+        from gearcam.kinds.gear_pair.elastic_motion import ElasticRun
+
+        run: PairRun = ElasticRun(**settings, progress=progress)
+    else:
+        run = PairRun(**settings)
     progress("motion", 1, 2)
     with result.stage("motion"):
         columns = run.columns()

@@ -27,7 +27,7 @@ from gearcam.pictures.charts import Chart, Limit, Line, knot_marks
 from gearcam.results.study import StudyResult
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from gearcam.gears.contact import FlankPairs
     from gearcam.kinds.gear_pair.result import GearPairResult
@@ -82,16 +82,20 @@ class PairUnderLoad:
     ----------
     result : GearPairResult
         The pair.
+    loads : sequence of WheelLoadSpec, optional
+        In place of those of its design.
 
     Raises
     ------
     DesignError
-        If nothing acts on it, or a load does not fit its travel.
+        If a load does not fit its travel.
     """
 
-    def __init__(self, result: GearPairResult) -> None:
+    def __init__(
+        self, result: GearPairResult, loads: Sequence[WheelLoadSpec] | None = None
+    ) -> None:
         self.result = result
-        self.loads: tuple[WheelLoadSpec, ...] = result.design.load
+        self.loads = tuple(result.design.load if loads is None else loads)
         self.turns = bool(result.pair.closed)
         self.travel = _TURN if self.turns else float(result.turn(1)[-1])
         for number, load in enumerate(self.loads):
