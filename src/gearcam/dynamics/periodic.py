@@ -1,0 +1,350 @@
+"""The periodic motion of a follower that stays on its cam, exactly, and at which speed it jumps.
+
+In contact the equations are linear, with constant matrices: ``z' = A*z + B*p(x)``. Within a cell of
+width h the state passes on as ``exp(A*h)*z`` and the integral of ``exp(A*(h - t))*B*p``, by Gauss
+in cells that are small beside every natural period. The state at the beginning of the turn is that
+which repeats. Nothing is cut off, as a Fourier series would be at jumps of acceleration or load.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gearcam.base.display import ShortRepr
+from gearcam.base.errors import InfeasibleError
+from gearcam.dynamics.follower import Follower
+from gearcam.numeric.arrays import Array
+
+_EVEN: Final = 720
+"""Cells of a turn, at least."""
+
+_PER_PIECE: Final = 24
+"""Cells between knots, at least."""
+
+_PER_PERIOD: Final = 16
+"""Cells in the fastest natural period, at least: extremes are then found between them."""
+
+_MOST: Final = 400_000
+"""Largest number of cells."""
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
+_NODES, _WEIGHTS = 0.5 * (1.0 + _NODES), 0.5 * _WEIGHTS
+
+_ROUNDS: Final = 4
+"""Divisions of the space around an extreme by a sixteenth."""
+
+_SPEEDS: Final = 0.5
+"""Step of the speeds that are looked at, over the damping ratio: a resonance at a whole fraction of
+a natural frequency is twice the ratio wide, so that it has four of them."""
+
+_FINEST, _COARSEST = 2e-3, 0.05
+"""Limits of that step."""
+
+_BEYOND: Final = 3.0
+"""Largest speed that is looked at, over that at which a rigid follower jumps."""
+
+_STIFFEST: Final = 1e6
+"""Largest stiffness of a spring that is looked for, over the first."""
+
+_EXACT: Final = 1e-10
+"""Relative tolerance of roots."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Cells(ShortRepr):
+    """A turn in cells, equal ones between knots.
+
+    Parameters
+    ----------
+    edges : (n + 1,) array, rad
+        Their ends.
+    counts : tuple of int
+        Number of cells between knots.
+    places : (3, n, g) array
+        Lift and two derivatives at nodes in each cell.
+    loads : (masses, n, g) array
+        Loads there.
+    """
+
+    edges: Array
+    counts: tuple[int, ...]
+    places: Array
+    loads: Array
+
+
+def cells_of(follower: Follower, speed: float | None = None) -> Cells:
+    """Return cells for a follower at a `speed`, rad/s, or above; by default its own.
+
+    Raises
+    ------
+    InfeasibleError
+        If a turn has too many natural periods.
+    """
+    periods = float(follower.frequencies[-1]) / (speed or follower.speed)
+    if periods * _PER_PERIOD > _MOST:
+        what = f"{periods:.3g} natural vibrations in a turn: the follower is rigid at this speed"
+        near = f"above {follower.speed * periods * _PER_PERIOD / _MOST / (math.pi / 30):.3g} rpm"
+        raise InfeasibleError(what, where="drive.speed_rpm", nearest=near)
+    widths = np.diff(follower.knots)
+    share = max(float(_EVEN), periods * _PER_PERIOD) / widths.sum()
+    counts = np.maximum(np.ceil(share * widths), _PER_PIECE).astype(int)
+    parts = zip(follower.knots[:-1], follower.knots[1:], counts.tolist(), strict=True)
+    edges = np.concatenate(
+        [*(np.linspace(low, high, n + 1)[:-1] for low, high, n in parts), follower.knots[-1:]]
+    )
+    nodes = (edges[:-1, None] + np.diff(edges)[:, None] * _NODES).ravel()
+    shape = len(edges) - 1, len(_NODES)
+    return Cells(
+        edges=edges,
+        counts=tuple(counts.tolist()),
+        places=np.array([one.reshape(shape) for one in follower.lift(nodes, 2)]),
+        loads=follower.loads(nodes).reshape(-1, *shape),
+    )
+
+
+class Periodic(ShortRepr):
+    """The periodic motion of a follower in contact.
+
+    Parameters
+    ----------
+    follower : Follower
+        The follower.
+    cells : Cells, optional
+        Those of `cells_of`, at its speed or below it.
+    """
+
+    def __init__(self, follower: Follower, cells: Cells | None = None) -> None:
+        self.follower = follower
+        self.cells = cells_of(follower) if cells is None else cells
+        masses, damping, stiffness = follower.matrices
+        count, self._unit = len(masses), float(follower.frequencies[-1])
+        scale = masses[:, None] * self._unit
+        self._matrix = np.zeros((2 * count, 2 * count))
+        self._matrix[:count, count:] = np.eye(count) * self._unit / follower.speed
+        self._matrix[count:, :count] = -stiffness / scale / follower.speed
+        self._matrix[count:, count:] = -damping / masses[:, None] / follower.speed
+        self._input = np.zeros((2 * count, count))
+        self._input[count:] = np.diag(1.0 / (masses * self._unit * follower.speed))
+
+    def _forces(self, places: Array, loads: Array) -> Array:
+        """Return what bends the springs, (masses, ...), from lift, derivatives and loads."""
+        follower = self.follower
+        y, v, a = places
+        masses = np.array(follower.masses).reshape(-1, *(1 for _ in y.shape))
+        found = -loads - masses * follower.speed**2 * a
+        found[-1] -= follower.spring * y + follower.damper * follower.speed * v
+        return found
+
+    @cached_property
+    def states(self) -> Array:
+        """Lags, and their derivatives by time over the highest frequency, (n + 1, 2*masses)."""
+        forces = self._forces(self.cells.places, self.cells.loads)
+        size, begin = len(self._matrix), 0
+        passed, whole, parts = np.zeros(size), np.eye(size), []
+        for count, width in zip(self.cells.counts, self._widths, strict=True):
+            step, inward = self._step(width)
+            put = np.einsum("gab,bng->na", inward, forces[:, begin : begin + count])
+            parts.append((step, put))
+            own = _scan(step, np.vstack([passed, put]))
+            passed, whole = own[-1], np.linalg.matrix_power(step, count) @ whole
+            begin += count
+        state, found = np.linalg.solve(np.eye(size) - whole, passed), []
+        for step, put in parts:
+            own = _scan(step, np.vstack([state, put]))
+            found.append(own[:-1])
+            state = own[-1]
+        return np.vstack([*found, state])
+
+    @property
+    def _widths(self) -> list[float]:
+        ends = np.diff(self.follower.knots)
+        return [float(one) / count for one, count in zip(ends, self.cells.counts, strict=True)]
+
+    def _step(self, width: ArrayLike) -> tuple[Array, Array]:
+        """Return how a state passes through a cell, and what forces at its nodes add to it."""
+        from scipy.linalg import expm
+
+        width = np.asarray(width, dtype=float)
+        left = np.append(1.0, 1.0 - _NODES) * width[..., None]
+        passing = expm(self._matrix * left[..., None, None])
+        weights = _WEIGHTS * width[..., None]
+        return passing[..., 0, :, :], weights[..., None, None] * passing[..., 1:, :, :] @ self._input
+
+    def _by_angle(self, states: Array) -> Array:
+        """Return lag and derivative by the angle in turn, (2*masses, n), from rows of states."""
+        count = len(self.follower.masses)
+        found = np.empty((2 * count, len(states)))
+        found[0::2] = states[:, :count].T
+        found[1::2] = states[:, count:].T * (self._unit / self.follower.speed)
+        return found
+
+    def at(self, x: ArrayLike) -> Array:
+        """Return lags and their derivatives by the angle in turn, (2*masses, n), at angles."""
+        x = np.asarray(x, dtype=float)
+        edges = self.cells.edges
+        cell = np.clip(edges.searchsorted(x, side="right") - 1, 0, len(edges) - 2)
+        width = x - edges[cell]
+        step, inward = self._step(width)
+        nodes = (edges[cell][:, None] + width[:, None] * _NODES).ravel()
+        shape = x.size, len(_NODES)
+        places = np.array([one.reshape(shape) for one in self.follower.lift(nodes, 2)])
+        forces = self._forces(places, self.follower.loads(nodes).reshape(-1, *shape))
+        found = np.einsum("nab,nb->na", step, self.states[cell])
+        return self._by_angle(found + np.einsum("ngab,bng->na", inward, forces))
+
+    @cached_property
+    def start(self) -> Array:
+        """The state at the beginning of the turn (see `at`)."""
+        return self._by_angle(self.states[:1])[:, 0]
+
+    @cached_property
+    def forces(self) -> Array:
+        """Contact force along the lift at the edges of the cells."""
+        return self.follower.contact_force(self._by_angle(self.states))
+
+    def least(self, *, refined: bool = True) -> tuple[float, float]:
+        """Return the smallest contact force, from the side that presses, and where it is."""
+        side, edges = self.follower.side, self.cells.edges
+        best = int(np.argmin(side * self.forces))
+        low, high = edges[max(best - 1, 0)], edges[min(best + 1, len(edges) - 1)]
+        value, place = side * float(self.forces[best]), float(edges[best])
+        for _ in range(_ROUNDS if refined else 0):
+            x = np.linspace(low, high, 33)
+            found = side * self.follower.contact_force(self.at(x))
+            best = int(np.argmin(found))
+            value, place = float(found[best]), float(x[best])
+            low, high = x[max(best - 1, 0)], x[min(best + 1, len(x) - 1)]
+        return value, place
+
+    @property
+    def damping_ratio(self) -> float:
+        """The smallest damping ratio of its vibrations; 1 if there are none."""
+        roots = np.linalg.eigvals(self._matrix)
+        return float((-roots.real / np.abs(roots)).min())
+
+
+def _scan(step: Array, rows: Array) -> Array:
+    """Return ``z[i] = step @ z[i - 1] + rows[i]``, by doubling."""
+    reach = 1
+    while reach < len(rows):
+        moved = rows.copy()
+        moved[reach:] += rows[:-reach] @ step.T
+        rows, step, reach = moved, step @ step, 2 * reach
+    return rows
+
+
+def elastic_jump(follower: Follower) -> float | None:
+    """Return the lowest speed at which the smallest contact force is 0, rad/s, or None.
+
+    The force is no monotone function of the speed: at whole fractions of natural frequencies it has
+    resonances. Speeds are looked at in steps of half the damping ratio, from the lowest at which
+    vibrations could take the load off, up to three times that of a rigid follower. None: it does
+    not jump there; 0: the load does not press at rest either.
+
+    Parameters
+    ----------
+    follower : Follower
+        The follower, at any speed.
+    """
+    edges = cells_of(replace(follower, speed=float(follower.frequencies[-1]))).edges
+    low, high, ratio = _speeds(follower, edges)
+    if not high:
+        return 0.0
+    cells = cells_of(follower, low)
+
+    def least(speed: float, *, refined: bool = True) -> float:
+        return Periodic(replace(follower, speed=speed), cells).least(refined=refined)[0]
+
+    step = min(max(_SPEEDS * ratio, _FINEST), _COARSEST)
+    speeds = low * np.exp(np.linspace(0.0, 1.0, math.ceil(math.log(high / low) / step) + 1)
+                          * math.log(high / low))
+    found: list[float] = []
+    for number, speed in enumerate(speeds.tolist()):
+        found.append(least(speed, refined=False))
+        if found[-1] <= 0.0:
+            return _root(least, float(speeds[number - 1]), speed) if number else speed
+        if number > 1 and found[-2] < min(found[-3], found[-1]):
+            lowest, dip = _dip(least, speeds[number - 2 : number + 1])
+            if dip <= 0.0:
+                return _root(least, float(speeds[number - 2]), lowest)
+    return None
+
+
+def keeping_stiffness(follower: Follower, first: float) -> float:
+    """Return the least stiffness between last mass and frame that keeps a follower on its cam.
+
+    Parameters
+    ----------
+    follower : Follower
+        The follower, at its speed.
+    first : float
+        A stiffness above 0 of the size that is looked for.
+
+    Returns
+    -------
+    float
+        Infinite if none up to a million times the first does; it just keeps the follower there.
+    """
+
+    def lack(stiffness: float) -> float:
+        return -Periodic(replace(follower, spring=stiffness)).least()[0]
+
+    if lack(0.0) <= 0.0:
+        return 0.0
+    low, high = 0.0, first
+    while lack(high) > 0.0:
+        low, high = high, 2.0 * high
+        if high > _STIFFEST * first:
+            return math.inf
+    return _root(lack, low, high)
+
+
+def _speeds(follower: Follower, edges: Array) -> tuple[float, float, float]:
+    """Return lowest and highest speed of the search, and the damping ratio; 0 where it is loose.
+
+    A vibration of one mass follows its excitation at most ``1 + 2/(pi*ratio)`` times.
+    """
+    x = 0.5 * (edges[1:] + edges[:-1])
+    _, v, a = follower.lift(x, 2)
+    still = follower.side * follower.rigid_force(x, 0.0)
+    ratio = Periodic(follower, _NONE).damping_ratio
+    if still.min() <= 0.0:
+        return 0.0, 0.0, ratio
+    grows = 1.0 + 2.0 / (math.pi * ratio)
+    inertia = follower.mass * grows * np.abs(a).max()
+    drag = follower.damper * grows * np.abs(v).max()
+    low = 2.0 * still.min() / (drag + math.sqrt(drag**2 + 4.0 * inertia * still.min()))
+    pulling = -follower.side * follower.mass * a
+    rigid = math.sqrt(float((still[pulling > 0.0] / pulling[pulling > 0.0]).min()))
+    return float(low), _BEYOND * rigid, ratio
+
+
+_NONE: Final = Cells(
+    edges=np.zeros(1), counts=(), places=np.zeros((3, 0, 0)), loads=np.zeros((1, 0, 0))
+)
+
+
+def _dip(function: Callable[[float], float], speeds: Array) -> tuple[float, float]:
+    """Return place and value of the least of a function between three places."""
+    from scipy.optimize import minimize_scalar
+
+    low, high = float(speeds[0]), float(speeds[2])
+    found = minimize_scalar(function, bounds=(low, high), method="bounded",
+                            options={"xatol": 1e-6 * high})
+    return float(found.x), float(found.fun)
+
+
+def _root(function: Callable[[float], float], low: float, high: float) -> float:
+    """Return the root of a function that is positive at one place and not at another."""
+    from scipy.optimize import brentq
+
+    if function(high) > 0.0:  # below 0 by the coarse search alone
+        return high
+    return float(brentq(function, low, high, rtol=_EXACT, xtol=_EXACT * high))
