@@ -193,9 +193,7 @@ def chosen(follower: Follower, method: str) -> str:
     return "dop853" if follower.periods <= FOLLOWED else "radau"
 
 
-def _turn(
-    follower: Follower, method: str, tolerance: float, start: tuple[str, Array]
-) -> Motion:
+def _turn(follower: Follower, method: str, tolerance: float, start: tuple[str, Array]) -> Motion:
     """Return the motion over a turn."""
     read = follower.reader()
     atol: Any = tuple((tolerance * _scales(follower)).tolist())

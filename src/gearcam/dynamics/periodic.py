@@ -175,7 +175,9 @@ class Periodic(ShortRepr):
         left = np.append(1.0, 1.0 - _NODES) * width[..., None]
         passing = expm(self._matrix * left[..., None, None])
         weights = _WEIGHTS * width[..., None]
-        return passing[..., 0, :, :], weights[..., None, None] * passing[..., 1:, :, :] @ self._input
+        return passing[..., 0, :, :], weights[..., None, None] * passing[
+            ..., 1:, :, :
+        ] @ self._input
 
     def _by_angle(self, states: Array) -> Array:
         """Return lag and derivative by the angle in turn, (2*masses, n), from rows of states."""
@@ -263,8 +265,9 @@ def elastic_jump(follower: Follower) -> float | None:
         return Periodic(replace(follower, speed=speed), cells).least(refined=refined)[0]
 
     step = min(max(_SPEEDS * ratio, _FINEST), _COARSEST)
-    speeds = low * np.exp(np.linspace(0.0, 1.0, math.ceil(math.log(high / low) / step) + 1)
-                          * math.log(high / low))
+    speeds = low * np.exp(
+        np.linspace(0.0, 1.0, math.ceil(math.log(high / low) / step) + 1) * math.log(high / low)
+    )
     found: list[float] = []
     for number, speed in enumerate(speeds.tolist()):
         found.append(least(speed, refined=False))
@@ -336,8 +339,9 @@ def _dip(function: Callable[[float], float], speeds: Array) -> tuple[float, floa
     from scipy.optimize import minimize_scalar
 
     low, high = float(speeds[0]), float(speeds[2])
-    found = minimize_scalar(function, bounds=(low, high), method="bounded",
-                            options={"xatol": 1e-6 * high})
+    found = minimize_scalar(
+        function, bounds=(low, high), method="bounded", options={"xatol": 1e-6 * high}
+    )
     return float(found.x), float(found.fun)
 
 

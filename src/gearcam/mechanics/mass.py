@@ -12,7 +12,7 @@ from gearcam.base.rules import Breach, needs
 
 @dataclass(frozen=True, kw_only=True)
 class MassSpec(ShortRepr):
-    """The mass of the follower with all that moves with it.
+    """The mass of the follower, or of what moves with it behind an elastic train.
 
     Examples
     --------
@@ -21,7 +21,12 @@ class MassSpec(ShortRepr):
     MassSpec(mass=0.35)
     """
 
-    of: str = param(TEXT, default="follower", choices=("follower",), doc="member that has the mass")
+    of: str = param(
+        TEXT,
+        default="follower",
+        choices=("follower", "train"),
+        doc="member that has the mass; train: behind the elastic train of `gearcam dynamics`",
+    )
     mass: float | None = param(MASS, default=None, gt=0, le=1e6, example=0.35, doc="mass")
     inertia: float | None = param(
         INERTIA,

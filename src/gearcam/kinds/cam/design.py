@@ -22,10 +22,12 @@ from gearcam.cams.spec import (
     FollowerSpec,
 )
 from gearcam.cams.spec import KIND as CAM
+from gearcam.dynamics.follower_checks import MOVING
 from gearcam.designs.design import Design, document_of
 from gearcam.designs.faults import Fault, show
 from gearcam.designs.kind import Examined
 from gearcam.designs.table import table_of
+from gearcam.designs.validate import placed_faults
 from gearcam.kinds.cam.forms.base import FORMS, VARIANTS
 from gearcam.kinds.cam.motion import MOTION, circumstances
 from gearcam.kinds.cam.tables import (
@@ -35,6 +37,7 @@ from gearcam.kinds.cam.tables import (
     BoundsSpec,
     CamBlank,
     CamOutputSpec,
+    FollowerDynamicsSpec,
     FollowSpec,
     PrecisionSpec,
 )
@@ -88,6 +91,8 @@ class CamDesign(Design):
         Materials of cam and follower.
     forces : ForcesSpec
         Settings of the study of forces.
+    dynamics : FollowerDynamicsSpec
+        Elasticity of the follower, for the study of its dynamics.
     follow : FollowSpec
         A given profile, for the study of the motion that it makes.
     precision : PrecisionSpec
@@ -123,6 +128,7 @@ class CamDesign(Design):
     friction: FrictionSpec = field(default_factory=FrictionSpec)
     material: MaterialSpec = field(default_factory=MaterialSpec)
     forces: ForcesSpec = field(default_factory=ForcesSpec)
+    dynamics: FollowerDynamicsSpec = field(default_factory=FollowerDynamicsSpec)
     follow: FollowSpec = field(default_factory=FollowSpec)
     precision: PrecisionSpec = field(default_factory=PrecisionSpec)
     accuracy: AccuracySpec = field(default_factory=AccuracySpec)
@@ -186,7 +192,12 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     yield from _follow_faults(output, document.get("follow"))
     yield from _tool_faults(output, follower)
     if "follower" in found.parts:
-        yield from load_faults(found, document, oscillating=found.parts["follower"].oscillating)
+        oscillating = found.parts["follower"].oscillating
+        yield from load_faults(found, document, oscillating=oscillating)
+        if "dynamics" in found.parts and "dynamics" in document:
+            breaches = found.parts["dynamics"].allowed_on(oscillating=oscillating)
+            table = table_of("dynamics", FollowerDynamicsSpec)
+            yield from placed_faults(breaches, table, document["dynamics"], ("dynamics",))
     asked = unknowns(document)
     yield from _unsolvable(document, asked)
     if {"cam", "follower"} <= found.parts.keys():
@@ -296,11 +307,12 @@ KIND: Final = Kind(
     problems=problems,
     check_modules=(
         "gearcam.cams.checks",
+        "gearcam.dynamics.follower_checks",
         "gearcam.laws.row_checks",
         "gearcam.mechanics.force_checks",
         "gearcam.parts.checks",
     ),
-    check_groups=(CAM, "rows of tables", PARTS, FOLLOWED, FITTED, FORCES, PRECISION),
+    check_groups=(CAM, "rows of tables", PARTS, FOLLOWED, FITTED, FORCES, MOVING, PRECISION),
     example={
         "motion": [
             {"type": "rise", "angle_deg": 120, "law": "cycloidal", "lift_mm": 10},

@@ -17,6 +17,7 @@ from gearcam.kinds.cam.tables import (
     BoundsSpec,
     CamBlank,
     CamOutputSpec,
+    FollowerDynamicsSpec,
     FollowSpec,
     PrecisionSpec,
 )
@@ -35,7 +36,8 @@ from gearcam.parts.blank import WheelBlank
 
 __all__ = [
     "AccuracySpec", "BoundsSpec", "CamBlank", "CamDesign", "CamOutputSpec", "CamResult", "CamSpec",
-    "ConjugateFollower", "ConjugateSpec", "DriveSpec", "DwellPhase", "FollowSpec", "FollowerSpec",
+    "ConjugateFollower", "ConjugateSpec", "DriveSpec", "DwellPhase", "FollowSpec",
+    "FollowerDynamicsSpec", "FollowerSpec",
     "ForcesSpec", "FrictionSpec", "GoalSpec", "GravitySpec", "GrooveBlank", "GrooveFollower",
     "GrooveSpec", "LoadSpec", "MassSpec", "MaterialSpec", "MotionFormula", "MotionTable",
     "PlateBlank", "PlateFollower", "PlateOutput", "PlateSpec", "PrecisionSpec", "ReturnPhase",
