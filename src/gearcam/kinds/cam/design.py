@@ -22,12 +22,12 @@ from gearcam.cams.spec import (
     FollowerSpec,
 )
 from gearcam.cams.spec import KIND as CAM
-from gearcam.dynamics.follower_checks import MOVING
 from gearcam.designs.design import Design, document_of
 from gearcam.designs.faults import Fault, show
 from gearcam.designs.kind import Examined
 from gearcam.designs.table import table_of
 from gearcam.designs.validate import placed_faults
+from gearcam.dynamics.follower_checks import MOVING
 from gearcam.kinds.cam.forms.base import FORMS, VARIANTS
 from gearcam.kinds.cam.motion import MOTION, circumstances
 from gearcam.kinds.cam.tables import (

@@ -1,4 +1,4 @@
-"""A cam with its follower in motion: the model from the design, its motion, forces and residuals."""
+"""A cam with its follower in motion: the model of a design, its motion and its forces."""
 
 from __future__ import annotations
 
@@ -73,12 +73,12 @@ def _faults(design: Any) -> list[tuple[str, str, str]]:
     flat = f"a {design.follower.type} follower has no radius that the formula of Hertz needs"
     on_cam = [one for one in design.mass if one.of == "follower"]
     lacks = "is missing: a mass behind the train needs the stiffness of"
+    slides = "a cam that slides to and fro has no constant speed: it has no dynamics here"
+    still = "is missing: dynamics need the speed of the cam"
     unit = "nm_rad" if design.follower.oscillating else "n_mm"
     cases = (
-        (design.form == "translating", "cam.form", "a cam that slides to and fro has no constant "
-         "speed: dynamics are not available for it", "another form"),
-        (design.drive.speed is None, "drive.speed_rpm", "is missing: dynamics need the speed of "
-         "the cam", "a speed above 0"),
+        (design.form == "translating", "cam.form", slides, "another form"),
+        (design.drive.speed is None, "drive.speed_rpm", still, "a speed above 0"),
         (not on_cam, "mass", "is missing: dynamics need the mass of the follower",
          '[[mass]] with of = "follower"'),
         (behind and dynamics.train is None, f"dynamics.stiffness_{unit}", f"{lacks} the train",
@@ -123,7 +123,7 @@ class MovingCam:
         """Whether train or contact are elastic."""
         return self.spec.elastic
 
-    def _groups(self) -> list[Sequence[MassSpec]]:
+    def groups(self) -> list[Sequence[MassSpec]]:
         """Return the masses on the cam, and those behind the train, if there are any."""
         masses = self.result.design.mass
         behind = [one for one in masses if one.of == "train"]
@@ -185,8 +185,7 @@ class MovingCam:
         return np.concatenate([[0.0], knots, [program.period]])
 
     def _follower(self, loads: Loads) -> Follower:
-        groups = self._groups()
-        first, *behind = (replace(loads, masses=one, given=(), springs=()) for one in groups)
+        first, *behind = (replace(loads, masses=one, given=(), springs=()) for one in self.groups())
         preload = sum(float(one.force) for one in loads.springs)
 
         def acting(x: Array) -> Array:
@@ -319,7 +318,9 @@ class Moment:
         states, contact = self._states
         found = self._moving.follower.accelerations(self.x, states, contact)
         return [
-            DrivenMotion(self.x, self.rigid.s + states[2 * k], self.rigid.ds + states[2 * k + 1], one)
+            DrivenMotion(
+                self.x, self.rigid.s + states[2 * k], self.rigid.ds + states[2 * k + 1], one
+            )
             for k, one in enumerate(found)
         ]
 
@@ -336,7 +337,7 @@ class Moment:
         if moving.elastic:
             pressing = sum(
                 replace(loads, masses=masses).pressing(motion)
-                for masses, motion in zip(moving._groups(), self.motions, strict=True)
+                for masses, motion in zip(moving.groups(), self.motions, strict=True)
             )
             force = np.where(self.contact, moving.follower.contact_force(self._states[0]), 0.0)
             total = replace(total, against=force, resultant=np.asarray(pressing))

@@ -29,8 +29,8 @@ from gearcam.base.quantities import (
 )
 from gearcam.base.registry import deferred
 from gearcam.base.rules import Breach, needs
-from gearcam.dynamics.integrate import METHODS
 from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, pose_param, studies_param
+from gearcam.dynamics.integrate import METHODS
 from gearcam.kinds.shared import ACCURACY, forces_study
 from gearcam.parts.blank import OPENING_RULES, WheelBlank, least_metal, widening_rules
 from gearcam.results.kind import Study, studies_of
@@ -62,6 +62,7 @@ STUDIES: Final = studies_of(
         doc="Compute the motion of an elastic follower, with flights; write DIR/NAME/dynamics.csv.",
         done="computed",
         table="dynamics",
+        options={"stiffness_nm_rad": "swing-stiffness"},
         compute=deferred(f"{_HERE}.dynamics:study_dynamics"),
         demand=deferred(f"{_HERE}.moving:demand"),
     ),
