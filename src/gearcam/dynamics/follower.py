@@ -22,6 +22,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import Any, Final
 
 import numpy as np
@@ -104,6 +105,22 @@ class Follower(ShortRepr):
         root = 1.0 / np.sqrt(masses)
         return np.sqrt(np.linalg.eigvalsh(stiffness * np.outer(root, root)))
 
+    @cached_property
+    def system(self) -> Array:
+        """Matrix of lags, and their derivatives by time over the highest frequency, by time."""
+        masses, damping, stiffness = self.matrices
+        count, unit = len(masses), float(self.frequencies[-1])
+        found = np.zeros((2 * count, 2 * count))
+        found[:count, count:] = np.eye(count) * unit
+        found[count:, :count] = -stiffness / (masses[:, None] * unit)
+        found[count:, count:] = -damping / masses[:, None]
+        return found
+
+    @cached_property
+    def roots(self) -> Array:
+        """Roots of its vibrations in contact, 1/s, complex."""
+        return np.linalg.eigvals(self.system)
+
     @property
     def periods(self) -> float:
         """Periods of the fastest natural vibration in a turn."""
@@ -137,11 +154,15 @@ class Follower(ShortRepr):
         return Tabled(every, self.knots, _TABLED)
 
     @cached_property
+    def samples(self) -> Array:
+        """Angles between the knots, rad."""
+        parts = (np.linspace(*ends, 65)[1:-1] for ends in pairwise(self.knots.tolist()))
+        return np.concatenate(list(parts))
+
+    @cached_property
     def sizes(self) -> tuple[float, float]:
         """The largest load of a rigid follower, and the largest lift."""
-        x = np.concatenate([np.linspace(*ends, 65)[1:-1] for ends in zip(
-            self.knots[:-1], self.knots[1:], strict=True
-        )])  # fmt: skip
+        x = self.samples
         return float(np.abs(self.rigid_force(x)).max()), float(np.abs(self.lift(x, 0)[0]).max())
 
     def contact_force(self, states: Array) -> Array:

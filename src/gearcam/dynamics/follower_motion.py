@@ -14,8 +14,11 @@ from gearcam.dynamics.follower import CONTACT, FLIGHT, Follower
 from gearcam.dynamics.integrate import Integrator, Motion
 from gearcam.numeric.arrays import Array, Mask
 
-FOLLOWED: Final = 200.0
+FOLLOWED: Final = 100.0
 """Natural periods in a turn up to which "auto" follows each with dop853: then radau is faster."""
+
+_WIDEST: Final = 0.25
+"""Largest step of dop853 in fastest natural periods: between its ends wider ones are not exact."""
 
 _FINER: Final = 0.1
 """Tolerance of the run that tells the error, over that of the motion."""
@@ -197,7 +200,8 @@ def _turn(follower: Follower, method: str, tolerance: float, start: tuple[str, A
     """Return the motion over a turn."""
     read = follower.reader()
     atol: Any = tuple((tolerance * _scales(follower)).tolist())
-    integrate = Integrator(method=method, rtol=tolerance, atol=atol)
+    widest = _WIDEST * 2.0 * np.pi / follower.periods if method == "dop853" else np.inf
+    integrate = Integrator(method=method, rtol=tolerance, atol=atol, widest=float(widest))
     return integrate(follower.modes(read), start, follower.knots.tolist(), passed=read.passed)
 
 

@@ -164,11 +164,14 @@ class Integrator(ShortRepr):
         Tolerance of a step, relative to the state.
     atol : tuple of float
         The same, absolute, for each part of the state.
+    widest : float
+        Largest step: within wider ones the state may be known less well than at their ends.
     """
 
     method: str
     rtol: float
     atol: tuple[float, ...]
+    widest: float = np.inf
 
     def __call__(
         self,
@@ -251,9 +254,8 @@ class _Run:
         """Integrate in one mode; return place, state and mode at its end or at the knot."""
         mode, given = self._modes[name], self._integrator
         width = None if self._width is None else min(self._width, end - x)
-        solver = self._made(
-            mode.rate, x, y, end, rtol=given.rtol, atol=given.atol, first_step=width
-        )
+        tolerances = {"rtol": given.rtol, "atol": given.atol, "max_step": given.widest}
+        solver = self._made(mode.rate, x, y, end, first_step=width, **tolerances)
         try:
             while solver.status == "running":
                 solver.step()

@@ -1,9 +1,11 @@
-"""The periodic motion of a follower that stays on its cam, exactly, and at which speed it jumps.
+"""The periodic motion of a follower that stays on its cam, and at which speed it jumps.
 
-In contact the equations are linear, with constant matrices: ``z' = A*z + B*p(x)``. Within a cell of
-width h the state passes on as ``exp(A*h)*z`` and the integral of ``exp(A*(h - t))*B*p``, by Gauss
-in cells that are small beside every natural period. The state at the beginning of the turn is that
-which repeats. Nothing is cut off, as a Fourier series would be at jumps of acceleration or load.
+In contact the equations are linear, with constant matrices: ``z' = A*z + B*p(x)``. A cell is passed
+by collocation at the eight nodes of Radau, of order 15: exact to rounding where cells are small
+beside the natural periods, and true to the slow motion where they are not. So cells are small
+everywhere, or, of a slow cam, behind each knot until its vibrations have died away. The state at
+the beginning of the turn is that which repeats. Nothing is cut off, as a Fourier series would be at
+jumps of acceleration or load.
 """
 
 from __future__ import annotations
@@ -12,13 +14,13 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.base.display import ShortRepr
-from gearcam.base.errors import InfeasibleError
 from gearcam.dynamics.follower import Follower
 from gearcam.numeric.arrays import Array
 
@@ -29,13 +31,28 @@ _PER_PIECE: Final = 24
 """Cells between knots, at least."""
 
 _PER_PERIOD: Final = 16
-"""Cells in the fastest natural period, at least: extremes are then found between them."""
+"""Cells in the fastest natural period, where it is followed: extremes are found between them."""
 
-_MOST: Final = 400_000
-"""Largest number of cells."""
+_FOLLOWED: Final = 10_000
+"""Largest number of cells in a turn that is followed all along."""
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
-_NODES, _WEIGHTS = 0.5 * (1.0 + _NODES), 0.5 * _WEIGHTS
+_GONE: Final = 27.6
+"""Exponent of what has died away: 1e-12."""
+
+
+def _radau(count: int) -> tuple[Array, Array]:
+    """Return nodes in (0, 1], (n,), and integrals from 0 to them over values there, (n, n)."""
+    legendre = np.polynomial.legendre
+    nodes = np.sort(legendre.legroots([0.0] * (count - 1) + [1.0, -1.0]).real)
+    nodes[-1] = 1.0
+    values = legendre.legvander(nodes, count - 1)
+    integrals = np.stack(
+        [legendre.legval(nodes, legendre.legint(row, lbnd=-1.0)) for row in np.eye(count)], axis=1
+    )
+    return 0.5 * (1.0 + nodes), 0.5 * np.linalg.solve(values.T, integrals.T).T
+
+
+_NODES, _INTEGRALS = _radau(8)
 
 _ROUNDS: Final = 4
 """Divisions of the space around an extreme by a sixteenth."""
@@ -59,54 +76,70 @@ _EXACT: Final = 1e-10
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Cells(ShortRepr):
-    """A turn in cells, equal ones between knots.
+    """A turn in cells, equal ones in each zone.
 
     Parameters
     ----------
     edges : (n + 1,) array, rad
         Their ends.
     counts : tuple of int
-        Number of cells between knots.
+        Number of cells of each zone.
+    widths : tuple of float, rad
+        Their width in each.
     places : (3, n, g) array
         Lift and two derivatives at nodes in each cell.
     loads : (masses, n, g) array
         Loads there.
+    followed : bool
+        Whether they are small beside the natural periods all along.
     """
 
     edges: Array
     counts: tuple[int, ...]
+    widths: tuple[float, ...]
     places: Array
     loads: Array
+    followed: bool
 
 
 def cells_of(follower: Follower, speed: float | None = None) -> Cells:
-    """Return cells for a follower at a `speed`, rad/s, or above; by default its own.
+    """Return cells for a follower at a `speed`, rad/s, by default its own, and above if all small.
 
-    Raises
-    ------
-    InfeasibleError
-        If a turn has too many natural periods.
+    Parameters
+    ----------
+    follower : Follower
+        The follower.
+    speed : float, optional
+        Of the cam.
     """
-    periods = float(follower.frequencies[-1]) / (speed or follower.speed)
-    if periods * _PER_PERIOD > _MOST:
-        what = f"{periods:.3g} natural vibrations in a turn: the follower is rigid at this speed"
-        near = f"above {follower.speed * periods * _PER_PERIOD / _MOST / (math.pi / 30):.3g} rpm"
-        raise InfeasibleError(what, where="drive.speed_rpm", nearest=near)
-    widths = np.diff(follower.knots)
-    share = max(float(_EVEN), periods * _PER_PERIOD) / widths.sum()
-    counts = np.maximum(np.ceil(share * widths), _PER_PIECE).astype(int)
-    parts = zip(follower.knots[:-1], follower.knots[1:], counts.tolist(), strict=True)
-    edges = np.concatenate(
-        [*(np.linspace(low, high, n + 1)[:-1] for low, high, n in parts), follower.knots[-1:]]
-    )
-    nodes = (edges[:-1, None] + np.diff(edges)[:, None] * _NODES).ravel()
-    shape = len(edges) - 1, len(_NODES)
+    speed = speed or follower.speed
+    turn = float(follower.knots[-1] - follower.knots[0])
+    small = 2.0 * math.pi * speed / float(follower.frequencies[-1]) / _PER_PERIOD
+    followed = turn <= _FOLLOWED * small
+    even = min(turn / _EVEN, small) if followed else turn / _EVEN
+    fading = min(small, even), _GONE * speed / float(-follower.roots.real.max())
+    edges, counts, widths = [follower.knots[:1]], [], []
+    for low, high in pairwise(follower.knots.tolist()):
+        middle = high if followed else min(low + fading[1], high)
+        for start, end, width in ((low, middle, fading[0]), (middle, high, even)):
+            if end > start:
+                counts.append(max(math.ceil((end - start) / width), _PER_PIECE))
+                widths.append((end - start) / counts[-1])
+                edges.append(np.linspace(start, end, counts[-1] + 1)[1:])
+    ends = np.concatenate(edges)
+    places, loads = _at_nodes(follower, ends[:-1], np.diff(ends))
     return Cells(
-        edges=edges,
-        counts=tuple(counts.tolist()),
-        places=np.array([one.reshape(shape) for one in follower.lift(nodes, 2)]),
-        loads=follower.loads(nodes).reshape(-1, *shape),
-    )
+        edges=ends, counts=tuple(counts), widths=tuple(widths), places=places, loads=loads,
+        followed=followed,
+    )  # fmt: skip
+
+
+def _at_nodes(follower: Follower, low: Array, width: Array) -> tuple[Array, Array]:
+    """Return lift, derivatives and loads at nodes of cells: (3, n, g) and (masses, n, g)."""
+    x = low[:, None] + width[:, None] * _NODES
+    x[:, -1] = np.maximum(np.nextafter(x[:, -1], -np.inf), low)  # before a knot
+    places = np.array([one.reshape(x.shape) for one in follower.lift(x.ravel(), 2)])
+    return places, follower.loads(x.ravel()).reshape(-1, *x.shape)
 
 
 class Periodic(ShortRepr):
@@ -123,15 +156,11 @@ class Periodic(ShortRepr):
     def __init__(self, follower: Follower, cells: Cells | None = None) -> None:
         self.follower = follower
         self.cells = cells_of(follower) if cells is None else cells
-        masses, damping, stiffness = follower.matrices
-        count, self._unit = len(masses), float(follower.frequencies[-1])
-        scale = masses[:, None] * self._unit
-        self._matrix = np.zeros((2 * count, 2 * count))
-        self._matrix[:count, count:] = np.eye(count) * self._unit / follower.speed
-        self._matrix[count:, :count] = -stiffness / scale / follower.speed
-        self._matrix[count:, count:] = -damping / masses[:, None] / follower.speed
+        count, self._unit = len(follower.masses), float(follower.frequencies[-1])
+        self._matrix = follower.system / follower.speed
         self._input = np.zeros((2 * count, count))
-        self._input[count:] = np.diag(1.0 / (masses * self._unit * follower.speed))
+        inertia = np.array(follower.masses) * self._unit * follower.speed
+        self._input[count:] = np.diag(1.0 / inertia)
 
     def _forces(self, places: Array, loads: Array) -> Array:
         """Return what bends the springs, (masses, ...), from lift, derivatives and loads."""
@@ -148,7 +177,7 @@ class Periodic(ShortRepr):
         forces = self._forces(self.cells.places, self.cells.loads)
         size, begin = len(self._matrix), 0
         passed, whole, parts = np.zeros(size), np.eye(size), []
-        for count, width in zip(self.cells.counts, self._widths, strict=True):
+        for count, width in zip(self.cells.counts, self.cells.widths, strict=True):
             step, inward = self._step(width)
             put = np.einsum("gab,bng->na", inward, forces[:, begin : begin + count])
             parts.append((step, put))
@@ -162,22 +191,17 @@ class Periodic(ShortRepr):
             state = own[-1]
         return np.vstack([*found, state])
 
-    @property
-    def _widths(self) -> list[float]:
-        ends = np.diff(self.follower.knots)
-        return [float(one) / count for one, count in zip(ends, self.cells.counts, strict=True)]
-
     def _step(self, width: ArrayLike) -> tuple[Array, Array]:
         """Return how a state passes through a cell, and what forces at its nodes add to it."""
-        from scipy.linalg import expm
-
-        width = np.asarray(width, dtype=float)
-        left = np.append(1.0, 1.0 - _NODES) * width[..., None]
-        passing = expm(self._matrix * left[..., None, None])
-        weights = _WEIGHTS * width[..., None]
-        return passing[..., 0, :, :], weights[..., None, None] * passing[
-            ..., 1:, :, :
-        ] @ self._input
+        width = np.asarray(width, dtype=float)[..., None, None]
+        size, count = len(self._matrix), len(_NODES)
+        coupled = np.eye(size * count) - width * np.kron(_INTEGRALS, self._matrix)
+        right = np.empty((*width.shape[:-2], size * count, size + count * self._input.shape[1]))
+        right[..., :size] = np.tile(np.eye(size), (count, 1))
+        right[..., size:] = width * np.kron(_INTEGRALS, self._input)
+        last = np.linalg.solve(coupled, right)[..., -size:, :]
+        inward = last[..., size:].reshape(*last.shape[:-1], count, -1)
+        return last[..., :size], np.moveaxis(inward, -2, -3)
 
     def _by_angle(self, states: Array) -> Array:
         """Return lag and derivative by the angle in turn, (2*masses, n), from rows of states."""
@@ -194,10 +218,7 @@ class Periodic(ShortRepr):
         cell = np.clip(edges.searchsorted(x, side="right") - 1, 0, len(edges) - 2)
         width = x - edges[cell]
         step, inward = self._step(width)
-        nodes = (edges[cell][:, None] + width[:, None] * _NODES).ravel()
-        shape = x.size, len(_NODES)
-        places = np.array([one.reshape(shape) for one in self.follower.lift(nodes, 2)])
-        forces = self._forces(places, self.follower.loads(nodes).reshape(-1, *shape))
+        forces = self._forces(*_at_nodes(self.follower, edges[cell], width))
         found = np.einsum("nab,nb->na", step, self.states[cell])
         return self._by_angle(found + np.einsum("ngab,bng->na", inward, forces))
 
@@ -225,12 +246,6 @@ class Periodic(ShortRepr):
             low, high = x[max(best - 1, 0)], x[min(best + 1, len(x) - 1)]
         return value, place
 
-    @property
-    def damping_ratio(self) -> float:
-        """The smallest damping ratio of its vibrations; 1 if there are none."""
-        roots = np.linalg.eigvals(self._matrix)
-        return float((-roots.real / np.abs(roots)).min())
-
 
 def _scan(step: Array, rows: Array) -> Array:
     """Return ``z[i] = step @ z[i - 1] + rows[i]``, by doubling."""
@@ -255,14 +270,14 @@ def elastic_jump(follower: Follower) -> float | None:
     follower : Follower
         The follower, at any speed.
     """
-    edges = cells_of(replace(follower, speed=float(follower.frequencies[-1]))).edges
-    low, high, ratio = _speeds(follower, edges)
+    low, high, ratio = _speeds(follower)
     if not high:
         return 0.0
     cells = cells_of(follower, low)
+    shared = cells if cells.followed else None
 
     def least(speed: float, *, refined: bool = True) -> float:
-        return Periodic(replace(follower, speed=speed), cells).least(refined=refined)[0]
+        return Periodic(replace(follower, speed=speed), shared).least(refined=refined)[0]
 
     step = min(max(_SPEEDS * ratio, _FINEST), _COARSEST)
     speeds = low * np.exp(
@@ -309,15 +324,15 @@ def keeping_stiffness(follower: Follower, first: float) -> float:
     return _root(lack, low, high)
 
 
-def _speeds(follower: Follower, edges: Array) -> tuple[float, float, float]:
+def _speeds(follower: Follower) -> tuple[float, float, float]:
     """Return lowest and highest speed of the search, and the damping ratio; 0 where it is loose.
 
     A vibration of one mass follows its excitation at most ``1 + 2/(pi*ratio)`` times.
     """
-    x = 0.5 * (edges[1:] + edges[:-1])
+    x = follower.samples
     _, v, a = follower.lift(x, 2)
     still = follower.side * follower.rigid_force(x, 0.0)
-    ratio = Periodic(follower, _NONE).damping_ratio
+    ratio = float((-follower.roots.real / np.abs(follower.roots)).min())
     if still.min() <= 0.0:
         return 0.0, 0.0, ratio
     grows = 1.0 + 2.0 / (math.pi * ratio)
@@ -327,11 +342,6 @@ def _speeds(follower: Follower, edges: Array) -> tuple[float, float, float]:
     pulling = -follower.side * follower.mass * a
     rigid = math.sqrt(float((still[pulling > 0.0] / pulling[pulling > 0.0]).min()))
     return float(low), _BEYOND * rigid, ratio
-
-
-_NONE: Final = Cells(
-    edges=np.zeros(1), counts=(), places=np.zeros((3, 0, 0)), loads=np.zeros((1, 0, 0))
-)
 
 
 def _dip(function: Callable[[float], float], speeds: Array) -> tuple[float, float]:

@@ -216,10 +216,14 @@ def _facts(moving: MovingCam, moment: Moment) -> Tree:
     least = limit_of(MOVING, "residual-vibration", limits)
     total = unit_scale * float(np.ptp(result.program.range))
     force_error, place_error = turn.error
+    hertz = (follower.frequencies / (2.0 * math.pi)).tolist()
     contact = None if moving.spec.contact_stiffness is None else moving.contact_stiffness
     return tree | {
         "natural_frequency_hz": Fact(
-            (follower.frequencies / (2.0 * math.pi)).tolist(), "natural frequencies", shown=True
+            hertz,
+            "natural frequencies",
+            text=" and ".join(map(formatted, hertz)),
+            shown=True,
         ),
         f"contact_stiffness_{bend}": None
         if contact is None

@@ -63,6 +63,7 @@ STUDIES: Final = studies_of(
         done="computed",
         table="dynamics",
         options={"stiffness_nm_rad": "swing-stiffness"},
+        elsewhere={"speed": "drive.speed_rpm"},
         compute=deferred(f"{_HERE}.dynamics:study_dynamics"),
         demand=deferred(f"{_HERE}.moving:demand"),
     ),
@@ -224,7 +225,7 @@ class FollowerDynamicsSpec(ShortRepr):
         TEXT,
         default="auto",
         choices=("auto", *METHODS),
-        doc="integrator; auto: dop853 up to 200 natural periods in a turn, else radau",
+        doc="integrator; auto: dop853 up to 100 natural periods in a turn, else radau",
     )
     tolerance: float = param(
         NUMBER, default=1e-6, ge=1e-12, le=1e-3, doc="relative tolerance of a step"
