@@ -30,7 +30,7 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.dynamics.integrate import Mode, Switch
 from gearcam.dynamics.tabled import Tabled
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, Mask, Plane
 
 CONTACT: Final = "contact"
 FLIGHT: Final = "flight"
@@ -103,7 +103,8 @@ class Follower(ShortRepr):
         """Natural frequencies in contact without damping, rad/s, rising."""
         masses, _, stiffness = self.matrices
         root = 1.0 / np.sqrt(masses)
-        return np.sqrt(np.linalg.eigvalsh(stiffness * np.outer(root, root)))
+        squares = np.linalg.eigvalsh(stiffness * np.outer(root, root))
+        return np.sqrt(np.asarray(squares, dtype=float))
 
     @cached_property
     def system(self) -> Array:
@@ -117,9 +118,9 @@ class Follower(ShortRepr):
         return found
 
     @cached_property
-    def roots(self) -> Array:
+    def roots(self) -> Plane:
         """Roots of its vibrations in contact, 1/s, complex."""
-        return np.linalg.eigvals(self.system)
+        return np.asarray(np.linalg.eigvals(self.system), dtype=complex)
 
     @property
     def periods(self) -> float:
@@ -135,7 +136,7 @@ class Follower(ShortRepr):
         """Return the lags of a very slow cam at angles x, (masses, n)."""
         loads = self.loads(x).copy()
         loads[-1] += self.spring * self.lift(x, 0)[0]
-        return np.linalg.solve(self.matrices[2], -loads)
+        return np.asarray(np.linalg.solve(self.matrices[2], -loads), dtype=float)
 
     def rigid_force(self, x: Array, speed: float | None = None) -> Array:
         """Return the contact force along the lift of a rigid follower, (n,), at a `speed`."""
@@ -169,7 +170,7 @@ class Follower(ShortRepr):
         """Return N of states, (m, n), as if in contact."""
         return -self.stiffness[0] * states[0] - self.damping[0] * self.speed * states[1]
 
-    def accelerations(self, x: Array, states: Array, contact: Array) -> Array:
+    def accelerations(self, x: Array, states: Array, contact: Mask) -> Array:
         """Return the accelerations of the masses by the angle, (masses, n).
 
         Parameters
@@ -193,7 +194,7 @@ class Follower(ShortRepr):
         net = force[:-1] - force[1:] - self.loads(x)
         return net / (np.array(self.masses)[:, None] * self.speed**2)
 
-    def energy(self, x: Array, states: Array, contact: Array) -> Array:
+    def energy(self, x: Array, states: Array, contact: Mask) -> Array:
         """Return kinetic energy and that of the springs, (n,) (see `accelerations`)."""
         y, v = self.lift(x, 1)
         count = len(self.masses)

@@ -23,6 +23,9 @@ _WIDEST: Final = 0.25
 _FINER: Final = 0.1
 """Tolerance of the run that tells the error, over that of the motion."""
 
+_SAME: Final = 10.0
+"""What two turns may differ by to be one, in tolerances."""
+
 _COMPARED: Final = 721
 """Number of angles at which both are compared."""
 
@@ -174,12 +177,12 @@ def settle(
     """
     method = chosen(follower, method)
     state: tuple[str, Array] = CONTACT, np.append(start, [0.0, 0.0])
-    scales, evaluations = _scales(follower), 0
-    for number in range(1, turns + 1):
+    scales, evaluations, number = _scales(follower), 0, 0
+    while True:
         motion = _turn(follower, method, tolerance, state)
-        evaluations += motion.evaluations
+        number, evaluations = number + 1, evaluations + motion.evaluations
         apart = np.abs(motion.end - state[1])[:-1] / scales[:-1]
-        repeats = motion.mode == state[0] and bool((apart <= 10.0 * tolerance).all())
+        repeats = motion.mode == state[0] and bool((apart <= _SAME * tolerance).all())
         if repeats or number == turns:
             break
         state = motion.mode, np.append(motion.end[:-1], 0.0)

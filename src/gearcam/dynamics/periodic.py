@@ -15,7 +15,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,6 +23,7 @@ from numpy.typing import ArrayLike
 from gearcam.base.display import ShortRepr
 from gearcam.dynamics.follower import Follower
 from gearcam.numeric.arrays import Array
+from gearcam.numeric.roots import bracketed_root
 
 _EVEN: Final = 720
 """Cells of a turn, at least."""
@@ -49,7 +50,8 @@ def _radau(count: int) -> tuple[Array, Array]:
     integrals = np.stack(
         [legendre.legval(nodes, legendre.legint(row, lbnd=-1.0)) for row in np.eye(count)], axis=1
     )
-    return 0.5 * (1.0 + nodes), 0.5 * np.linalg.solve(values.T, integrals.T).T
+    weights = np.linalg.solve(values.T, integrals.T).T
+    return 0.5 * (1.0 + nodes), np.asarray(0.5 * weights, dtype=float)
 
 
 _NODES, _INTEGRALS = _radau(8)
@@ -66,6 +68,9 @@ _FINEST, _COARSEST = 2e-3, 0.05
 
 _BEYOND: Final = 3.0
 """Largest speed that is looked at, over that at which a rigid follower jumps."""
+
+_SETTLED: Final = 4.6
+"""Exponent of a vibration that is small: 1 %."""
 
 _STIFFEST: Final = 1e6
 """Largest stiffness of a spring that is looked for, over the first."""
@@ -184,7 +189,8 @@ class Periodic(ShortRepr):
             own = _scan(step, np.vstack([passed, put]))
             passed, whole = own[-1], np.linalg.matrix_power(step, count) @ whole
             begin += count
-        state, found = np.linalg.solve(np.eye(size) - whole, passed), []
+        state = np.asarray(np.linalg.solve(np.eye(size) - whole, passed), dtype=float)
+        found = []
         for step, put in parts:
             own = _scan(step, np.vstack([state, put]))
             found.append(own[:-1])
@@ -199,7 +205,8 @@ class Periodic(ShortRepr):
         right = np.empty((*width.shape[:-2], size * count, size + count * self._input.shape[1]))
         right[..., :size] = np.tile(np.eye(size), (count, 1))
         right[..., size:] = width * np.kron(_INTEGRALS, self._input)
-        last = np.linalg.solve(coupled, right)[..., -size:, :]
+        solved = np.asarray(np.linalg.solve(coupled, right), dtype=float)
+        last = solved[..., -size:, :]
         inward = last[..., size:].reshape(*last.shape[:-1], count, -1)
         return last[..., :size], np.moveaxis(inward, -2, -3)
 
@@ -261,9 +268,10 @@ def elastic_jump(follower: Follower) -> float | None:
     """Return the lowest speed at which the smallest contact force is 0, rad/s, or None.
 
     The force is no monotone function of the speed: at whole fractions of natural frequencies it has
-    resonances. Speeds are looked at in steps of half the damping ratio, from the lowest at which
-    vibrations could take the load off, up to three times that of a rigid follower. None: it does
-    not jump there; 0: the load does not press at rest either.
+    resonances. Speeds are looked at in steps of half the damping ratio, up to three times that of a
+    rigid follower, from the lowest at which vibrations could take the load off; where loads jump,
+    from that at which the vibration has died away before the next knot. None: it does not jump
+    there; 0: it does at all speeds that are low.
 
     Parameters
     ----------
@@ -279,15 +287,15 @@ def elastic_jump(follower: Follower) -> float | None:
     def least(speed: float, *, refined: bool = True) -> float:
         return Periodic(replace(follower, speed=speed), shared).least(refined=refined)[0]
 
+    if least(low) <= 0.0:
+        return 0.0
     step = min(max(_SPEEDS * ratio, _FINEST), _COARSEST)
-    speeds = low * np.exp(
-        np.linspace(0.0, 1.0, math.ceil(math.log(high / low) / step) + 1) * math.log(high / low)
-    )
+    speeds = np.geomspace(low, high, math.ceil(math.log(high / low) / step) + 1)
     found: list[float] = []
     for number, speed in enumerate(speeds.tolist()):
         found.append(least(speed, refined=False))
         if found[-1] <= 0.0:
-            return _root(least, float(speeds[number - 1]), speed) if number else speed
+            return _root(least, float(speeds[max(number - 1, 0)]), speed)
         if number > 1 and found[-2] < min(found[-3], found[-1]):
             lowest, dip = _dip(least, speeds[number - 2 : number + 1])
             if dip <= 0.0:
@@ -295,7 +303,7 @@ def elastic_jump(follower: Follower) -> float | None:
     return None
 
 
-def keeping_stiffness(follower: Follower, first: float) -> float:
+def keeping_stiffness(follower: Follower, first: float, force: float) -> float:
     """Return the least stiffness between last mass and frame that keeps a follower on its cam.
 
     Parameters
@@ -304,15 +312,17 @@ def keeping_stiffness(follower: Follower, first: float) -> float:
         The follower, at its speed.
     first : float
         A stiffness above 0 of the size that is looked for.
+    force : float
+        Least contact force that is wanted.
 
     Returns
     -------
     float
-        Infinite if none up to a million times the first does; it just keeps the follower there.
+        Infinite if none up to a million times the first does.
     """
 
     def lack(stiffness: float) -> float:
-        return -Periodic(replace(follower, spring=stiffness)).least()[0]
+        return force - Periodic(replace(follower, spring=stiffness)).least()[0]
 
     if lack(0.0) <= 0.0:
         return 0.0
@@ -341,6 +351,11 @@ def _speeds(follower: Follower) -> tuple[float, float, float]:
     low = 2.0 * still.min() / (drag + math.sqrt(drag**2 + 4.0 * inertia * still.min()))
     pulling = -follower.side * follower.mass * a
     rigid = math.sqrt(float((still[pulling > 0.0] / pulling[pulling > 0.0]).min()))
+    ends = follower.knots
+    before = follower.loads(np.nextafter(ends[1:], -np.inf))
+    after = np.roll(follower.loads(np.nextafter(ends[:-1], np.inf)), -1, axis=1)
+    if (np.abs(after - before) > _EXACT * np.abs(before).max(initial=0.0)).any():
+        low = min(low, float(np.diff(ends).min() * -follower.roots.real.max() / _SETTLED))
     return float(low), _BEYOND * rigid, ratio
 
 
@@ -349,16 +364,17 @@ def _dip(function: Callable[[float], float], speeds: Array) -> tuple[float, floa
     from scipy.optimize import minimize_scalar
 
     low, high = float(speeds[0]), float(speeds[2])
-    found = minimize_scalar(
-        function, bounds=(low, high), method="bounded", options={"xatol": 1e-6 * high}
-    )
+    options = {"xatol": 1e-6 * high}
+    found: Any = minimize_scalar(function, bounds=(low, high), method="bounded", options=options)
     return float(found.x), float(found.fun)
 
 
 def _root(function: Callable[[float], float], low: float, high: float) -> float:
     """Return the root of a function that is positive at one place and not at another."""
-    from scipy.optimize import brentq
-
     if function(high) > 0.0:  # below 0 by the coarse search alone
         return high
-    return float(brentq(function, low, high, rtol=_EXACT, xtol=_EXACT * high))
+
+    def values(x: Array) -> Array:
+        return np.array(function(float(x)))
+
+    return float(bracketed_root(values, low, high, _EXACT * high))

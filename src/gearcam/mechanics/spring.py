@@ -123,8 +123,6 @@ class SpringSpec(ShortRepr):
     def with_solved(self, solved: Mapping[str, float]) -> SpringSpec:
         """Return it with what is solved for: ``preload`` or ``stiffness``, N or N mm, and so on."""
         straight = self.stiffness is not None or self.preload is not None
-        names = dict(
-            zip(("stiffness", "preload"), _STRAIGHT if straight else _SWINGING, strict=False)
-        )
-        found = {names[what]: value for what, value in solved.items()}
+        names = _STRAIGHT if straight else _SWINGING
+        found = {names[what == "preload"]: value for what, value in solved.items()}
         return replace(self, **{k: v for k, v in found.items() if getattr(self, k) == "solve"})

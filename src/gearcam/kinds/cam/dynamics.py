@@ -22,7 +22,6 @@ from gearcam.pictures.charts import Chart, Limit, Line
 from gearcam.results.study import StudyResult
 
 if TYPE_CHECKING:
-
     from gearcam.dynamics.follower_motion import Flight
     from gearcam.kinds.cam.moving import Moment
     from gearcam.kinds.cam.result import CamResult
@@ -86,7 +85,7 @@ def study_dynamics(result: CamResult, progress: Progress) -> StudyResult:
 def _timed(moving: MovingCam) -> list[tuple[str, float]]:
     """Return names of velocity and acceleration, with their units over those by the angle."""
     motion = moving.result.cam.motions[0]
-    return list(motion.timed_scales(moving.loads.speed).items())
+    return list(motion.timed_scales(moving.speed).items())
 
 
 def _lift(moving: MovingCam) -> tuple[float, str]:
@@ -102,7 +101,7 @@ def _columns(moving: MovingCam, moment: Moment) -> dict[str, Any]:
     velocity, acceleration = _timed(moving)[:2]
     effort, per = drive.effort
     columns = {
-        "t_s": moment.x / moving.loads.speed,
+        "t_s": moment.x / moving.speed,
         driver.column: driver.scale * moment.x,
         f"lift_{unit}": scale * moment.rigid.s,
         **{f"x{k}_{unit}": scale * one.s for k, one in enumerate(moment.motions, 1)},
@@ -111,8 +110,8 @@ def _columns(moving: MovingCam, moment: Moment) -> dict[str, Any]:
         f"load_{suffix}": load_scale * statics.against,
         "contact_n": moment.normal,
         "contact": moment.contact.astype(int),
-        effort: per * np.where(moment.contact, statics.torque, 0.0),
-        "pressure_mpa": np.where(moment.contact, moving.under.pressure(statics), 0.0),
+        effort: per * moment.torque,
+        "pressure_mpa": moment.pressure,
     }
     return {
         name: values if values.dtype.kind == "i" else np.ma.masked_invalid(values)
@@ -184,9 +183,9 @@ def _checked(moving: MovingCam, moment: Moment) -> MovingFollower:
 
 def _facts(moving: MovingCam, moment: Moment) -> Tree:
     """Return the facts of the study."""
-    result, statics, limits = moving.result, moment.statics, moving.result.design.limits
+    result, limits = moving.result, moving.result.design.limits
     effort, scale = result.design.drive.effort
-    pressure = np.where(moment.contact, moving.under.pressure(statics), np.nan)
+    pressure = np.where(moment.contact, moment.pressure, np.nan)
     (name, per), peak = _timed(moving)[1], float(np.abs(moment.motions[-1].d2s).max())
     rigid = float(np.abs(moment.rigid.d2s).max())
     tree: Tree = {
@@ -202,7 +201,7 @@ def _facts(moving: MovingCam, moment: Moment) -> Tree:
         },
         "pressure_mpa": _range(moving, moment, pressure, "contact pressure", "MPa"),
         effort: _range(
-            moving, moment, scale * np.where(moment.contact, statics.torque, 0.0),
+            moving, moment, scale * moment.torque,
             "torque of the cam", "N m",
         ),
         "spring": solved_springs(moving.loads, moving.solved) or None,
@@ -268,9 +267,9 @@ def _jumps(moving: MovingCam) -> Tree | None:
     if release is not None:
         found["rigid"] = Fact(release[0] / factor, "a rigid follower jumps at", unit="rpm")
     if moving.elastic and moving.jump is not None:
-        found["elastic"] = Fact(
-            moving.jump / factor, "the elastic follower jumps at", unit="rpm", shown=True
-        )
+        text = "" if moving.jump else "all low speeds"
+        label, unit = "the elastic follower jumps at", "rpm" if moving.jump else ""
+        found["elastic"] = Fact(moving.jump / factor, label, unit=unit, text=text, shown=True)
     return found
 
 

@@ -19,6 +19,7 @@ from gearcam.kinds.under_load import UnderLoad
 from gearcam.mechanics.follower_loads import DrivenMotion
 from gearcam.mechanics.hertz import line_stiffness
 from gearcam.mechanics.statics import Statics, solve
+from gearcam.numeric.narrowing import neighbours, summits
 from gearcam.numeric.piecewise import with_both_sides
 
 if TYPE_CHECKING:
@@ -38,6 +39,12 @@ _PER_PERIOD: Final = 12
 
 _MOST: Final = 20_000
 """Largest number of places."""
+
+_LEFT: Final = 10.0
+"""Least contact force with a spring that is solved for, over the load and the tolerance."""
+
+_NARROW: Final = 1e-8
+"""Width, over the turn, to which an extreme is narrowed."""
 
 _APART: Final = 1e-12
 """Knots that are nearer to each other, over a turn, are one."""
@@ -116,6 +123,7 @@ class MovingCam:
         self.result, self.spec = result, result.design.dynamics
         self.under = UnderLoad(result)
         self._rigid: Loads = self.under.loads
+        self.speed = float(result.design.drive.speed or 0.0)  # rad/s
         self.held = len(result.touches) > 1
 
     @property
@@ -133,8 +141,8 @@ class MovingCam:
     def solved(self) -> dict[str, float]:
         """What springs that are solved for need to keep the elastic follower on its cam.
 
-        Without friction, at the speed of the drive; as for a rigid follower where it is rigid, or
-        pressed from above or held.
+        Without friction, at the speed of the drive, with ten tolerances of the largest load left;
+        as for a rigid follower where it is rigid, or pressed from above or held.
 
         Raises
         ------
@@ -146,11 +154,12 @@ class MovingCam:
             return loads.solved
         (what,) = loads.solved
         without = self._follower(self._with({what: 0.0}))
-        if what == "preload":
-            least = Periodic(without).least()[0]
-            return {what: max(0.0, -least / without.rest_share)}
         load, size = without.sizes
-        found = keeping_stiffness(without, load / size) - without.spring
+        left = _LEFT * self.spec.tolerance * load
+        if what == "preload":
+            lack = left - Periodic(without).least()[0]
+            return {what: max(0.0, lack / without.rest_share)}
+        found = keeping_stiffness(without, load / size, left) - without.spring
         if math.isinf(found):
             spring = next(k for k, one in enumerate(loads.springs) if one.rate == "solve")
             what = "no stiffness keeps the elastic follower on the cam"
@@ -202,7 +211,7 @@ class MovingCam:
             damping=tuple(2.0 * ratio * math.sqrt(k * m) for ratio, k, m in pairs),
             spring=sum(float(one.rate) for one in loads.springs),
             damper=loads.damper,
-            speed=loads.speed or 0.0,
+            speed=self.speed,
             lift=self.result.program.derivatives,
             loads=acting,
             knots=self.knots,
@@ -261,13 +270,17 @@ class MovingCam:
 
     @cached_property
     def places(self) -> Array:
-        """Angles at which extremes are looked for, rad: both sides of knots and switches."""
+        """Angles of the facts, rad: both sides of knots and switches, and where extremes are."""
         period = self.result.program.period
         count = _EVEN
         if self.elastic:
             count = int(min(max(_EVEN, _PER_PERIOD * self.follower.periods), _MOST))
         even = period * np.arange(count + 1.0) / count
-        return self._beside(even)
+        x = self._beside(even)
+        narrow = _NARROW * period
+        _, found, _ = summits(lambda places: self.at(places).sought, self.at(x).sought,
+                              *neighbours(x), narrow)  # fmt: skip
+        return np.union1d(x, found)
 
     @property
     def rows(self) -> Array:
@@ -349,3 +362,23 @@ class Moment:
         """Normal force of the cam, N: 0 in flight, nan where friction locks the follower."""
         statics = self.statics
         return np.where(self.contact & ~statics.lifted, statics.force, 0.0)
+
+    @property
+    def pressure(self) -> Array:
+        """Contact pressure, MPa: 0 in flight, infinite on an edge."""
+        return np.where(self.contact, self._moving.under.pressure(self.statics), 0.0)
+
+    @property
+    def torque(self) -> Array:
+        """Torque of the cam, N mm: 0 in flight."""
+        return np.where(self.contact, self.statics.torque, 0.0)
+
+    @property
+    def sought(self) -> Array:
+        """What is looked for where it is largest, (q, n)."""
+        pressure = np.where(np.isinf(self.pressure), np.nan, self.pressure)
+        acceleration = np.abs(self.motions[-1].d2s)
+        found = np.stack(
+            [self.normal, -self.normal, self.torque, -self.torque, pressure, acceleration]
+        )
+        return np.where(np.isnan(found), -np.inf, found)
