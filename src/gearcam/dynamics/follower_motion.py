@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.base.display import ShortRepr
+from gearcam.base.errors import InfeasibleError
 from gearcam.dynamics.follower import CONTACT, FLIGHT, Follower
 from gearcam.dynamics.integrate import Integrator, Motion
 from gearcam.numeric.arrays import Array, Mask
@@ -22,6 +23,12 @@ _WIDEST: Final = 0.25
 
 _FINER: Final = 0.1
 """Tolerance of the run that tells the error, over that of the motion."""
+
+_MOST: Final = 1e7
+"""Largest number of natural vibrations that are followed each."""
+
+_EACH: Final = 8e-4
+"""What one takes dop853, s."""
 
 _SAME: Final = 10.0
 """What two turns may differ by to be one, in tolerances."""
@@ -173,9 +180,13 @@ def settle(
     Raises
     ------
     InfeasibleError
-        If it cannot be integrated.
+        If it cannot be integrated, or not in a sensible time.
     """
     method = chosen(follower, method)
+    vibrations = turns * follower.periods
+    if method == "dop853" and vibrations > _MOST:
+        what = f"{vibrations:.2g} natural vibrations take dop853 about {_EACH * vibrations:.2g} s"
+        raise InfeasibleError(what, where="dynamics.method", nearest='"auto" or "radau"')
     state: tuple[str, Array] = CONTACT, np.append(start, [0.0, 0.0])
     scales, evaluations, number = _scales(follower), 0, 0
     while True:

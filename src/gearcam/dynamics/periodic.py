@@ -69,6 +69,12 @@ _FINEST, _COARSEST = 2e-3, 0.05
 _BEYOND: Final = 3.0
 """Largest speed that is looked at, over that at which a rigid follower jumps."""
 
+_MOST_EVEN: Final = 16_384
+"""Largest number of places for a Fourier series."""
+
+_NEARLY: Final = 0.02
+"""Contact force over the largest load below which a speed is looked at closely."""
+
 _SETTLED: Final = 4.6
 """Exponent of a vibration that is small: 1 %."""
 
@@ -239,13 +245,13 @@ class Periodic(ShortRepr):
         """Contact force along the lift at the edges of the cells."""
         return self.follower.contact_force(self._by_angle(self.states))
 
-    def least(self, *, refined: bool = True) -> tuple[float, float]:
+    def least(self) -> tuple[float, float]:
         """Return the smallest contact force, from the side that presses, and where it is."""
         side, edges = self.follower.side, self.cells.edges
         best = int(np.argmin(side * self.forces))
         low, high = edges[max(best - 1, 0)], edges[min(best + 1, len(edges) - 1)]
         value, place = side * float(self.forces[best]), float(edges[best])
-        for _ in range(_ROUNDS if refined else 0):
+        for _ in range(_ROUNDS):
             x = np.linspace(low, high, 33)
             found = side * self.follower.contact_force(self.at(x))
             best = int(np.argmin(found))
@@ -268,10 +274,10 @@ def elastic_jump(follower: Follower) -> float | None:
     """Return the lowest speed at which the smallest contact force is 0, rad/s, or None.
 
     The force is no monotone function of the speed: at whole fractions of natural frequencies it has
-    resonances. Speeds are looked at in steps of half the damping ratio, up to three times that of a
-    rigid follower, from the lowest at which vibrations could take the load off; where loads jump,
-    from that at which the vibration has died away before the next knot. None: it does not jump
-    there; 0: it does at all speeds that are low.
+    resonances. Speeds are looked at in steps of half the damping ratio, first roughly, up to three
+    times that of a rigid follower, from the lowest at which vibrations could take the load off;
+    where loads jump, from that at which the vibration has died away before the next knot. None: it
+    does not jump there; 0: it does at all speeds that are low.
 
     Parameters
     ----------
@@ -284,23 +290,47 @@ def elastic_jump(follower: Follower) -> float | None:
     cells = cells_of(follower, low)
     shared = cells if cells.followed else None
 
-    def least(speed: float, *, refined: bool = True) -> float:
-        return Periodic(replace(follower, speed=speed), shared).least(refined=refined)[0]
+    def least(speed: float) -> float:
+        return Periodic(replace(follower, speed=speed), shared).least()[0]
 
     if least(low) <= 0.0:
         return 0.0
     step = min(max(_SPEEDS * ratio, _FINEST), _COARSEST)
     speeds = np.geomspace(low, high, math.ceil(math.log(high / low) / step) + 1)
-    found: list[float] = []
-    for number, speed in enumerate(speeds.tolist()):
-        found.append(least(speed, refined=False))
-        if found[-1] <= 0.0:
-            return _root(least, float(speeds[max(number - 1, 0)]), speed)
-        if number > 1 and found[-2] < min(found[-3], found[-1]):
-            lowest, dip = _dip(least, speeds[number - 2 : number + 1])
-            if dip <= 0.0:
-                return _root(least, float(speeds[number - 2]), lowest)
+    coarse = _by_series(follower, speeds)
+    for k in np.flatnonzero(coarse[1:] <= _NEARLY * follower.sizes[0]) + 1:
+        before, speed = float(speeds[k - 1]), float(speeds[k])
+        if least(speed) > 0.0:
+            around = speeds[k - 1 : k + 2]
+            if len(around) < 3 or coarse[k] > min(coarse[k - 1], coarse[k + 1]):
+                continue
+            speed, dip = _dip(least, around)
+            if dip > 0.0:
+                continue
+        while least(before) <= 0.0:
+            before *= 1.0 - step
+        return _root(least, before, speed)
     return None
+
+
+def _by_series(follower: Follower, speeds: Array) -> Array:
+    """Return the smallest contact force at speeds, (n,), roughly: by Fourier series of the lift."""
+    periods = float(follower.frequencies[-1] / speeds[0])
+    count = 2 ** math.ceil(math.log2(min(max(4.0 * periods, 1024.0), _MOST_EVEN)))
+    x = follower.knots[0] + (follower.knots[-1] - follower.knots[0]) * np.arange(count) / count
+    y, v, a = (np.fft.rfft(one) for one in follower.lift(x, 2))
+    loads = np.fft.rfft(follower.loads(x))
+    masses, damping, stiffness = follower.matrices
+    turns, found = 1j * np.arange(len(y)), []
+    for speed in speeds.tolist():
+        rates = (turns * speed)[:, None, None]
+        pushed = -loads - masses[:, None] * (speed**2 * a)
+        pushed[-1] -= follower.spring * y + follower.damper * speed * v
+        matrix = stiffness + rates * damping + rates**2 * np.diag(masses)
+        lag = np.linalg.solve(matrix, pushed.T[..., None])[:, 0, 0]
+        first = follower.stiffness[0] + follower.damping[0] * rates[:, 0, 0]
+        found.append((follower.side * np.fft.irfft(-first * lag, count)).min())
+    return np.array(found)
 
 
 def keeping_stiffness(follower: Follower, first: float, force: float) -> float:
