@@ -568,6 +568,12 @@ CAM_NUMBERS: dict[str, dict[str, Number]] = {
         "motion.peak_velocity_mm_s": (15 / 8 * 9 / OPENING, 1e-12),
         "forces.spring.preload_n": (PRELOAD, 1e-8),
     },
+    "elastic_valve_train": {
+        "dynamics.jump_rpm.rigid": (1218.964, 1e-6),
+        "dynamics.jump_rpm.elastic": (1131.858, 2e-6),
+        "dynamics.natural_frequency_hz[0]": (1908.90150566 / (2 * math.pi), 1e-11),
+        "dynamics.natural_frequency_hz[1]": (10506.0028099 / (2 * math.pi), 1e-11),
+    },
     "valve_tolerances": {
         "motion.peak_velocity_mm_s": (15 / 8 * 9 / OPENING, 1e-12),
         "forces.release_speed_rpm": (lambda: _release(95), 1e-6),

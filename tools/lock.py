@@ -28,6 +28,7 @@ SECTIONS = {
     "sweep": ["pyproject.toml", "--extra", "sweep"],
     "optimize": ["pyproject.toml", "--extra", "optimize"],
     "stress": ["pyproject.toml", "--extra", "stress"],
+    "dynamics": ["pyproject.toml", "--extra", "dynamics"],
     "test": ["--group", "test"],
     "lint": ["--group", "lint"],
     "bench": ["--group", "bench"],
@@ -35,7 +36,7 @@ SECTIONS = {
     "lock": ["--group", "lock"],
 }
 TOOLS = ["--group", "install", "--group", "test"]
-_MORE = ["--extra", "sweep", "--extra", "optimize", "--extra", "stress"]
+_MORE = ["--extra", "sweep", "--extra", "optimize", "--extra", "stress", "--extra", "dynamics"]
 HEAD = """\
 # Written by `make lock`; installed by the Makefile, section by section.
 """

@@ -43,7 +43,7 @@ _HAIR: Final = 1e-12
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Follower(ShortRepr):
+class ElasticFollower(ShortRepr):
     """A follower on its cam.
 
     Parameters
@@ -139,7 +139,15 @@ class Follower(ShortRepr):
         return np.asarray(np.linalg.solve(self.matrices[2], -loads), dtype=float)
 
     def rigid_force(self, x: Array, speed: float | None = None) -> Array:
-        """Return the contact force along the lift of a rigid follower, (n,), at a `speed`."""
+        """Return the contact force along the lift of a rigid follower, (n,).
+
+        Parameters
+        ----------
+        x : (n,) array, rad
+            Angles.
+        speed : float, optional
+            Of the cam, rad/s; by default its own.
+        """
         speed = self.speed if speed is None else speed
         y, v, a = self.lift(x, 2)
         inertia = self.mass * speed**2 * a

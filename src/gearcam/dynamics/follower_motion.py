@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import InfeasibleError
-from gearcam.dynamics.follower import CONTACT, FLIGHT, Follower
+from gearcam.dynamics.follower import CONTACT, FLIGHT, ElasticFollower
 from gearcam.dynamics.integrate import Integrator, Motion
 from gearcam.numeric.arrays import Array, Mask
 
@@ -60,7 +60,7 @@ class Turn(ShortRepr):
 
     Parameters
     ----------
-    follower : Follower
+    follower : ElasticFollower
         The follower.
     motion : Motion
         Its motion over the turn.
@@ -78,7 +78,7 @@ class Turn(ShortRepr):
         Of all turns.
     """
 
-    follower: Follower
+    follower: ElasticFollower
     motion: Motion
     start: tuple[str, Array]
     method: str
@@ -150,7 +150,7 @@ class Turn(ShortRepr):
 
 
 def settle(
-    follower: Follower,
+    follower: ElasticFollower,
     start: Array,
     *,
     turns: int = 20,
@@ -161,7 +161,7 @@ def settle(
 
     Parameters
     ----------
-    follower : Follower
+    follower : ElasticFollower
         The follower.
     start : (2*masses,) array
         Lags and their derivatives at the beginning of the first turn, in turn; it begins in
@@ -203,14 +203,16 @@ def settle(
     )  # fmt: skip
 
 
-def chosen(follower: Follower, method: str) -> str:
-    """Return the method of an integration: that which is given, or for "auto" the faster one."""
+def chosen(follower: ElasticFollower, method: str) -> str:
+    """Return the `method` of an integration, for "auto" that which is faster for a `follower`."""
     if method != "auto":
         return method
     return "dop853" if follower.periods <= FOLLOWED else "radau"
 
 
-def _turn(follower: Follower, method: str, tolerance: float, start: tuple[str, Array]) -> Motion:
+def _turn(
+    follower: ElasticFollower, method: str, tolerance: float, start: tuple[str, Array]
+) -> Motion:
     """Return the motion over a turn."""
     read = follower.reader()
     atol: Any = tuple((tolerance * _scales(follower)).tolist())
@@ -219,7 +221,7 @@ def _turn(follower: Follower, method: str, tolerance: float, start: tuple[str, A
     return integrate(follower.modes(read), start, follower.knots.tolist(), passed=read.passed)
 
 
-def _scales(follower: Follower) -> Array:
+def _scales(follower: ElasticFollower) -> Array:
     """Return sizes of the parts of a state: what the loads bend springs by, and work."""
     load, size = follower.sizes
     bent = load * np.cumsum([1.0 / one for one in follower.stiffness])

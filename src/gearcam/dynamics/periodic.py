@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.base.display import ShortRepr
-from gearcam.dynamics.follower import Follower
+from gearcam.dynamics.follower import ElasticFollower
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.roots import bracketed_root
 
@@ -113,12 +113,12 @@ class Cells(ShortRepr):
     followed: bool
 
 
-def cells_of(follower: Follower, speed: float | None = None) -> Cells:
+def cells_of(follower: ElasticFollower, speed: float | None = None) -> Cells:
     """Return cells for a follower at a `speed`, rad/s, by default its own, and above if all small.
 
     Parameters
     ----------
-    follower : Follower
+    follower : ElasticFollower
         The follower.
     speed : float, optional
         Of the cam.
@@ -145,7 +145,7 @@ def cells_of(follower: Follower, speed: float | None = None) -> Cells:
     )  # fmt: skip
 
 
-def _at_nodes(follower: Follower, low: Array, width: Array) -> tuple[Array, Array]:
+def _at_nodes(follower: ElasticFollower, low: Array, width: Array) -> tuple[Array, Array]:
     """Return lift, derivatives and loads at nodes of cells: (3, n, g) and (masses, n, g)."""
     x = low[:, None] + width[:, None] * _NODES
     x[:, -1] = np.maximum(np.nextafter(x[:, -1], -np.inf), low)  # before a knot
@@ -158,13 +158,13 @@ class Periodic(ShortRepr):
 
     Parameters
     ----------
-    follower : Follower
+    follower : ElasticFollower
         The follower.
     cells : Cells, optional
         Those of `cells_of`, at its speed or below it.
     """
 
-    def __init__(self, follower: Follower, cells: Cells | None = None) -> None:
+    def __init__(self, follower: ElasticFollower, cells: Cells | None = None) -> None:
         self.follower = follower
         self.cells = cells_of(follower) if cells is None else cells
         count, self._unit = len(follower.masses), float(follower.frequencies[-1])
@@ -270,7 +270,7 @@ def _scan(step: Array, rows: Array) -> Array:
     return rows
 
 
-def elastic_jump(follower: Follower) -> float | None:
+def elastic_jump(follower: ElasticFollower) -> float | None:
     """Return the lowest speed at which the smallest contact force is 0, rad/s, or None.
 
     The force is no monotone function of the speed: at whole fractions of natural frequencies it has
@@ -281,7 +281,7 @@ def elastic_jump(follower: Follower) -> float | None:
 
     Parameters
     ----------
-    follower : Follower
+    follower : ElasticFollower
         The follower, at any speed.
     """
     low, high, ratio = _speeds(follower)
@@ -313,7 +313,7 @@ def elastic_jump(follower: Follower) -> float | None:
     return None
 
 
-def _by_series(follower: Follower, speeds: Array) -> Array:
+def _by_series(follower: ElasticFollower, speeds: Array) -> Array:
     """Return the smallest contact force at speeds, (n,), roughly: by Fourier series of the lift."""
     periods = float(follower.frequencies[-1] / speeds[0])
     count = 2 ** math.ceil(math.log2(min(max(4.0 * periods, 1024.0), _MOST_EVEN)))
@@ -333,12 +333,12 @@ def _by_series(follower: Follower, speeds: Array) -> Array:
     return np.array(found)
 
 
-def keeping_stiffness(follower: Follower, first: float, force: float) -> float:
+def keeping_stiffness(follower: ElasticFollower, first: float, force: float) -> float:
     """Return the least stiffness between last mass and frame that keeps a follower on its cam.
 
     Parameters
     ----------
-    follower : Follower
+    follower : ElasticFollower
         The follower, at its speed.
     first : float
         A stiffness above 0 of the size that is looked for.
@@ -364,7 +364,7 @@ def keeping_stiffness(follower: Follower, first: float, force: float) -> float:
     return _root(lack, low, high)
 
 
-def _speeds(follower: Follower) -> tuple[float, float, float]:
+def _speeds(follower: ElasticFollower) -> tuple[float, float, float]:
     """Return lowest and highest speed of the search, and the damping ratio; 0 where it is loose.
 
     A vibration of one mass follows its excitation at most ``1 + 2/(pi*ratio)`` times.

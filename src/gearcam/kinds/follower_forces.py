@@ -302,7 +302,7 @@ def _integral(x: Array, y: Array) -> float:
 
 
 def solved_springs(loads: Loads, solved: Mapping[str, float]) -> Tree:
-    """Return the values of springs that are `solved` for, N or N mm and so on, as facts."""
+    """Return what springs among `loads` are `solved` for, N or N mm and so on, as facts."""
     scale, _, suffix = loads.follower.load_unit
     per = "rad" if loads.follower.angular else "mm"
     names = {"preload": f"preload_{suffix}", "stiffness": f"stiffness_{suffix}_{per}"}

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.dynamics import follower_motion
-from gearcam.dynamics.follower import CONTACT, FLIGHT, Follower
+from gearcam.dynamics.follower import CONTACT, FLIGHT, ElasticFollower
 from gearcam.dynamics.follower_motion import Turn, chosen, settle
 from gearcam.dynamics.integrate import Integrator
 from gearcam.dynamics.periodic import Periodic, cells_of, elastic_jump, keeping_stiffness
@@ -46,17 +46,17 @@ def eccentric(e: float, shift: float = 0.0):
 
 
 QUARTERS = np.linspace(0.0, TURN, 5)
-TRAIN = Follower(
+TRAIN = ElasticFollower(
     masses=(0.2e-3, 0.5e-3), stiffness=(20000.0, 2000.0), damping=(0.4, 0.1), spring=10.0,
     speed=900.0 * RPM, lift=cycloids, loads=acting(0.0, 200.0), knots=QUARTERS,
 )  # fmt: skip
-ONE = Follower(
+ONE = ElasticFollower(
     masses=(0.5e-3,), stiffness=(2000.0,), damping=(0.1,), spring=10.0, damper=0.02,
     speed=500.0 * RPM, lift=eccentric(5.0), loads=acting(90.0), knots=np.array([0.0, TURN]),
 )  # fmt: skip
 
 
-def harmonic(follower: Follower, e: float) -> complex:
+def harmonic(follower: ElasticFollower, e: float) -> complex:
     """Amplitude of the lag under the lift ``e*exp(1j*x)``: x'' and so on by hand."""
     (m,), (k,), (c,), w = follower.masses, follower.stiffness, follower.damping, follower.speed
     ks, cs = follower.spring, follower.damper
@@ -71,7 +71,7 @@ def least_force(speed: float, spring: float = 10.0) -> float:
     return (90.0 + 5.0 * spring) * 2000.0 / (2000.0 + spring) - size
 
 
-def fourier(follower: Follower, x, count: int = 4096):
+def fourier(follower: ElasticFollower, x, count: int = 4096):
     """Lags of both masses by a Fourier series of the forces that the lift makes."""
     even = TURN * np.arange(count) / count
     y = np.fft.rfft(follower.lift(even, 0)[0]) / count
@@ -107,7 +107,7 @@ def test_loss_and_return_of_contact() -> None:
         ]  # fmt: skip
         return found[: order + 1]
 
-    follower = Follower(
+    follower = ElasticFollower(
         masses=(0.5e-3,), stiffness=(2000.0,), damping=(0.0,), speed=1.0, lift=lift,
         loads=acting(40.0), knots=np.array([0.0, end, 0.008]),
     )  # fmt: skip
@@ -225,7 +225,7 @@ def test_the_rise_of_constant_acceleration_is_exact_between_knots() -> None:
         ]  # fmt: skip
         return found[: order + 1]
 
-    follower = Follower(
+    follower = ElasticFollower(
         masses=(1.0,), stiffness=(k,), damping=(0.0,), speed=1.0, lift=lift, held=True,
         loads=acting(0.0), knots=np.array([0.0, half, 1.0]),
     )  # fmt: skip

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from gearcam.base.tolerances import Tolerances
-from gearcam.dynamics.follower import Follower
+from gearcam.dynamics.follower import ElasticFollower
 from gearcam.dynamics.follower_motion import settle
 from gearcam.dynamics.residual import residual
 from gearcam.laws.motion import MOTION_LAWS
@@ -97,7 +97,7 @@ def test_an_integration_swings_as_far(law: str) -> None:
         found = function.derivatives(inside, max(order, 2))
         return [found[0], *(np.where(x < 1.0, one, 0.0) for one in found[1 : order + 1])]
 
-    follower = Follower(
+    follower = ElasticFollower(
         masses=(mass,), stiffness=(mass * omega**2,), damping=(0.0,), speed=1.0, lift=lift,
         loads=lambda x: np.zeros((1, x.size)), held=True,
         knots=np.append(function.knots, 1.0 + 10.0 / ratio),

@@ -192,10 +192,10 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     yield from _follow_faults(output, document.get("follow"))
     yield from _tool_faults(output, follower)
     if "follower" in found.parts:
-        oscillating = found.parts["follower"].oscillating
-        yield from load_faults(found, document, oscillating=oscillating)
+        held = found.parts["follower"]
+        yield from load_faults(found, document, oscillating=held.oscillating)
         if "dynamics" in found.parts and "dynamics" in document:
-            breaches = found.parts["dynamics"].allowed_on(oscillating=oscillating)
+            breaches = found.parts["dynamics"].allowed_on(oscillating=held.oscillating)
             table = table_of("dynamics", FollowerDynamicsSpec)
             yield from placed_faults(breaches, table, document["dynamics"], ("dynamics",))
     asked = unknowns(document)

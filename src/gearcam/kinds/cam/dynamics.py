@@ -289,7 +289,7 @@ def _charts(moving: MovingCam, moment: Moment) -> dict[str, Chart]:
             ),
         ),
         "lag": chart(
-            title="Follower's place less the lift",
+            title="ElasticFollower's place less the lift",
             y=f"difference, {unit}",
             lines=tuple(
                 Line(label=f"mass {k}", x=x, y=scale * (one.s - moment.rigid.s))

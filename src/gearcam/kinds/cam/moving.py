@@ -12,7 +12,7 @@ import numpy as np
 
 from gearcam.base.errors import DesignError, InfeasibleError, MissingExtraError, Problem
 from gearcam.cams.spec import POINTED
-from gearcam.dynamics.follower import Follower
+from gearcam.dynamics.follower import ElasticFollower
 from gearcam.dynamics.follower_motion import settle
 from gearcam.dynamics.periodic import Periodic, elastic_jump, keeping_stiffness
 from gearcam.kinds.under_load import UnderLoad
@@ -82,13 +82,13 @@ def _faults(design: Any) -> list[tuple[str, str, str]]:
     lacks = "is missing: a mass behind the train needs the stiffness of"
     slides = "a cam that slides to and fro has no constant speed: it has no dynamics here"
     still = "is missing: dynamics need the speed of the cam"
-    unit = "nm_rad" if design.follower.oscillating else "n_mm"
+    train = dynamics.train_key(oscillating=design.follower.oscillating)
     cases = (
         (design.form == "translating", "cam.form", slides, "another form"),
         (design.drive.speed is None, "drive.speed_rpm", still, "a speed above 0"),
         (not on_cam, "mass", "is missing: dynamics need the mass of the follower",
          '[[mass]] with of = "follower"'),
-        (behind and dynamics.train is None, f"dynamics.stiffness_{unit}", f"{lacks} the train",
+        (behind and dynamics.train is None, train, f"{lacks} the train",
          "a number above 0"),
         (behind and dynamics.contact_stiffness is None, "dynamics.contact_stiffness_n_mm",
          f"{lacks} the contact too", 'a number above 0, or "hertz"'),
@@ -177,7 +177,7 @@ class MovingCam:
         return self._with(self.solved)
 
     @cached_property
-    def follower(self) -> Follower:
+    def follower(self) -> ElasticFollower:
         """The elastic follower."""
         return self._follower(self.loads)
 
@@ -193,7 +193,7 @@ class MovingCam:
         knots = knots[np.diff(knots, prepend=0.0) > _APART * program.period]
         return np.concatenate([[0.0], knots, [program.period]])
 
-    def _follower(self, loads: Loads) -> Follower:
+    def _follower(self, loads: Loads) -> ElasticFollower:
         first, *behind = (replace(loads, masses=one, given=(), springs=()) for one in self.groups())
         preload = sum(float(one.force) for one in loads.springs)
 
@@ -205,7 +205,7 @@ class MovingCam:
         masses = tuple(one.inertia for one in (first, *behind))
         stiffness, ratios = self._springs(bool(behind))
         pairs = zip(ratios, stiffness, masses, strict=True)
-        return Follower(
+        return ElasticFollower(
             masses=masses,
             stiffness=stiffness,
             damping=tuple(2.0 * ratio * math.sqrt(k * m) for ratio, k, m in pairs),

@@ -255,6 +255,11 @@ class FollowerDynamicsSpec(ShortRepr):
             what = "an oscillating" if oscillating else "a translating"
             yield wrong, None, f"does not suit {what} follower", right
 
+    @staticmethod
+    def train_key(*, oscillating: bool) -> str:
+        """Return the key of the stiffness of the train."""
+        return "dynamics.stiffness_nm_rad" if oscillating else "dynamics.stiffness_n_mm"
+
 
 def _wanted(quantity: Quantity, *, word: str = "", example: float, doc: str) -> Any:
     """Return the largest deviation that is wanted, if there is one."""
