@@ -121,7 +121,7 @@ def residual_vibration(moving: MovingFollower, limit: float) -> Iterator[Remark]
 def energy(moving: MovingFollower, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn if the energies of the integrated motion do not balance.
 
-    Looks at: energy at 720 places of the turn less the work put in, over the largest change of
+    Looks at: energy at the steps of the turn less the work put in, over the largest change of
     energy, against a hundred times the tolerance.
     """
     most = _BALANCED * moving.tolerance

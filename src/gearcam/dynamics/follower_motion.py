@@ -122,9 +122,8 @@ class Turn(ShortRepr):
 
     @cached_property
     def energy_residue(self) -> float:
-        """What the energies of the turn do not balance by, over the largest energy in it."""
-        knots = self.follower.knots
-        x = np.linspace(knots[0], np.nextafter(knots[-1], 0.0), _COMPARED)
+        """What the energies at steps of the turn do not balance by, over their largest change."""
+        x = np.array([one.low for one in self.motion.pieces])
         states, contact = self.states(x)
         energy = self.follower.energy(x, states, contact)
         put = states[-1] - states[-1, 0]
