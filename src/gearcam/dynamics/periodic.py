@@ -54,7 +54,8 @@ def _radau(count: int) -> tuple[Array, Array]:
     return 0.5 * (1.0 + nodes), np.asarray(0.5 * weights, dtype=float)
 
 
-_NODES, _INTEGRALS = _radau(8)
+NODES, _INTEGRALS = _radau(8)
+"""Nodes of a cell, over its width, and integrals up to them over values there."""
 
 _ROUNDS: Final = 4
 """Divisions of the space around an extreme by a sixteenth."""
@@ -147,10 +148,39 @@ def cells_of(follower: ElasticFollower, speed: float | None = None) -> Cells:
 
 def _at_nodes(follower: ElasticFollower, low: Array, width: Array) -> tuple[Array, Array]:
     """Return lift, derivatives and loads at nodes of cells: (3, n, g) and (masses, n, g)."""
-    x = low[:, None] + width[:, None] * _NODES
+    x = low[:, None] + width[:, None] * NODES
     x[:, -1] = np.maximum(np.nextafter(x[:, -1], -np.inf), low)  # before a knot
     places = np.array([one.reshape(x.shape) for one in follower.lift(x.ravel(), 2)])
     return places, follower.loads(x.ravel()).reshape(-1, *x.shape)
+
+
+def passing(matrix: Array, entry: Array, width: ArrayLike) -> tuple[Array, Array]:
+    """Return how ``z' = matrix @ z + entry @ p`` passes through cells.
+
+    Parameters
+    ----------
+    matrix, entry : (m, m) and (m, k) arrays
+        Of the equations.
+    width : float or (n,) array
+        Of the cells.
+
+    Returns
+    -------
+    (..., m, m) array
+        What becomes of z.
+    (..., g, m, k) array
+        What p at each node adds.
+    """
+    width = np.asarray(width, dtype=float)[..., None, None]
+    size, count = len(matrix), len(NODES)
+    coupled = np.eye(size * count) - width * np.kron(_INTEGRALS, matrix)
+    right = np.empty((*width.shape[:-2], size * count, size + count * entry.shape[1]))
+    right[..., :size] = np.tile(np.eye(size), (count, 1))
+    right[..., size:] = width * np.kron(_INTEGRALS, entry)
+    solved = np.asarray(np.linalg.solve(coupled, right), dtype=float)
+    last = solved[..., -size:, :]
+    inward = last[..., size:].reshape(*last.shape[:-1], count, -1)
+    return last[..., :size], np.moveaxis(inward, -2, -3)
 
 
 class Periodic(ShortRepr):
@@ -205,16 +235,7 @@ class Periodic(ShortRepr):
 
     def _step(self, width: ArrayLike) -> tuple[Array, Array]:
         """Return how a state passes through a cell, and what forces at its nodes add to it."""
-        width = np.asarray(width, dtype=float)[..., None, None]
-        size, count = len(self._matrix), len(_NODES)
-        coupled = np.eye(size * count) - width * np.kron(_INTEGRALS, self._matrix)
-        right = np.empty((*width.shape[:-2], size * count, size + count * self._input.shape[1]))
-        right[..., :size] = np.tile(np.eye(size), (count, 1))
-        right[..., size:] = width * np.kron(_INTEGRALS, self._input)
-        solved = np.asarray(np.linalg.solve(coupled, right), dtype=float)
-        last = solved[..., -size:, :]
-        inward = last[..., size:].reshape(*last.shape[:-1], count, -1)
-        return last[..., :size], np.moveaxis(inward, -2, -3)
+        return passing(self._matrix, self._input, width)
 
     def _by_angle(self, states: Array) -> Array:
         """Return lag and derivative by the angle in turn, (2*masses, n), from rows of states."""
