@@ -582,6 +582,10 @@ CAM_NUMBERS: dict[str, dict[str, Number]] = {
         "motion.peak_velocity_mm_s": (15 / 8 * 9 / OPENING, 1e-12),
         "forces.spring.preload_n": (PRELOAD, 1e-8),
     },
+    "polydyne_cam": {
+        "motion.lift.max": (10 * (1 + 10 / 2000), 1e-6),
+        "dynamics.natural_frequency_hz[0]": (math.sqrt(2010 / 0.5e-3) / (2 * math.pi), 1e-10),
+    },
     "elastic_valve_train": {
         "dynamics.jump_rpm.rigid": (_rigid_jump, 1e-8),
         "dynamics.jump_rpm.elastic": (1131.858, 2e-3),  # apart from the project, by samples

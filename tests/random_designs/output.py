@@ -162,6 +162,9 @@ def dynamics(d: Draw, design: dict[str, Any], swings: bool) -> None:
     design["dynamics"] = made | {"turns": d.whole(1, 3)}
     if design["cam"].get("form") != "translating":
         design["output"]["studies"] = ["dynamics"]
+        if len(design["mass"]) == 1 and "contact_stiffness_n_mm" not in made and d.chance(0.3):
+            design["drive"]["polydyne"] = True
+            design["load"] = []
 
 
 def forces_in_space(d: Draw, design: dict[str, Any], swings: bool) -> None:

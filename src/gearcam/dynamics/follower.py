@@ -19,6 +19,7 @@ Units: loads in N or N mm, lifts in mm or rad, masses in N s2/mm or N mm s2.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -40,6 +41,19 @@ _TABLED: Final = 1e-12
 
 _HAIR: Final = 1e-12
 """What is rounding of a contact force or a gap, relative."""
+
+
+def damping_of(ratio: float, stiffness: float, mass: float) -> float:
+    """Return the damping of a spring with a `mass` behind it, by its damping `ratio`.
+
+    Parameters
+    ----------
+    ratio : float
+        Over the damping at which the mass would not swing.
+    stiffness, mass : float
+        Of both.
+    """
+    return 2.0 * ratio * math.sqrt(stiffness * mass)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -177,9 +177,7 @@ class Loads(ShortRepr):
     @cached_property
     def inertia(self) -> float:
         """Mass, kg, or moment of inertia, kg m2, times the unit of output over that inside."""
-        if self.follower.angular:
-            return 1e3 * sum(one.inertia or 0.0 for one in self.masses)
-        return MM * sum(one.mass or 0.0 for one in self.masses)
+        return sum(one.acting(angular=self.follower.angular) for one in self.masses)
 
     @cached_property
     def damper(self) -> float:

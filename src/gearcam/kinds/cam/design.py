@@ -30,6 +30,7 @@ from gearcam.designs.validate import placed_faults
 from gearcam.dynamics.follower_checks import MOVING
 from gearcam.kinds.cam.forms.base import FORMS, VARIANTS
 from gearcam.kinds.cam.motion import MOTION, circumstances
+from gearcam.kinds.cam.polydyne import polydyne_faults
 from gearcam.kinds.cam.tables import (
     GOALS,
     NAME,
@@ -43,7 +44,7 @@ from gearcam.kinds.cam.tables import (
 )
 from gearcam.kinds.follower_tables import load_faults
 from gearcam.kinds.shared import AccuracySpec, ForcesSpec, GoalSpec
-from gearcam.mechanics.drive import DriveSpec
+from gearcam.mechanics.drive import CamDriveSpec, SlideDriveSpec
 from gearcam.mechanics.friction import FrictionSpec
 from gearcam.mechanics.gravity import GravitySpec
 from gearcam.mechanics.load import FORCES, LoadSpec
@@ -71,7 +72,7 @@ class CamDesign(Design):
         The follower and its guide.
     cam : CamSpec
         Form, size, direction of turning.
-    drive : DriveSpec or SlideDriveSpec
+    drive : CamDriveSpec or SlideDriveSpec
         Speed of the cam.
     load : sequence of LoadSpec or SlideLoadSpec
         What the follower works against.
@@ -118,7 +119,7 @@ class CamDesign(Design):
     motion: Motion
     follower: FollowerSpec
     cam: CamSpec
-    drive: DriveSpec = field(default_factory=DriveSpec)
+    drive: CamDriveSpec | SlideDriveSpec = field(default_factory=CamDriveSpec)
     load: tuple[LoadSpec, ...] = ()
     blank: WheelBlank | PlateBlank = field(default_factory=CamBlank)
     output: CamOutputSpec = field(default_factory=CamOutputSpec)
@@ -198,6 +199,7 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
             breaches = found.parts["dynamics"].allowed_on(oscillating=held.oscillating)
             table = table_of("dynamics", FollowerDynamicsSpec)
             yield from placed_faults(breaches, table, document["dynamics"], ("dynamics",))
+        yield from polydyne_faults(found, document)
     asked = unknowns(document)
     yield from _unsolvable(document, asked)
     if {"cam", "follower"} <= found.parts.keys():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
@@ -12,6 +13,7 @@ from gearcam.base.facts import Fact, Tree, extent
 from gearcam.base.findings import limit_of, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.dynamics.follower_checks import MOVING, MovingFollower
+from gearcam.dynamics.periodic import Periodic
 from gearcam.dynamics.residual import residual
 from gearcam.kinds.cam.moving import MovingCam
 from gearcam.kinds.follower_forces import solved_springs
@@ -36,6 +38,12 @@ _SPECTRUM: Final = 4096
 
 _RATIOS: Final = 601
 """Places in the chart of residual vibrations."""
+
+_SPEEDS: Final = 61
+"""Speeds in the chart of vibrations over the speed."""
+
+_INSIDE: Final = 100
+"""Places of a dwell at which vibrations are looked at there."""
 
 _NOISE: Final = 1e-9
 """Share of the largest value that is 0."""
@@ -308,7 +316,32 @@ def _charts(moving: MovingCam, moment: Moment) -> dict[str, Chart]:
     if moving.elastic:
         charts["spectrum"] = _spectrum(moving)
         charts["residual"] = _residuals(moving)
+        if any(one.kind == "dwell" for one in moving.result.program.stretches):
+            charts["speed"] = _over_speed(moving)
     return charts
+
+
+def _over_speed(moving: MovingCam) -> Chart:
+    """Return the vibration in the dwells of this cam at other speeds, while contact is kept."""
+    (scale, unit), quantity = _lift(moving), moving.result.design.drive.quantity
+    x = np.concatenate(
+        [
+            np.linspace(one.start, one.end, _INSIDE + 1)[:-1]
+            for one in moving.result.program.stretches
+            if one.kind == "dwell"
+        ]
+    )
+    speeds, found = moving.speed * np.linspace(0.5, 1.5, _SPEEDS), []
+    for speed in speeds.tolist():
+        follower = replace(moving.follower, speed=speed)
+        lag = Periodic(follower).at(x)[2 * len(follower.masses) - 2]
+        found.append(float(np.abs(lag - follower.rest(x)[-1]).max()))
+    return Chart(
+        title="Largest vibration in a dwell over the speed, in contact",
+        x=f"speed of this cam, {quantity.unit}",
+        y=f"amplitude, {unit}",
+        lines=(Line(label="follower", x=speeds / quantity.factor, y=scale * np.array(found)),),
+    )
 
 
 def _spectrum(moving: MovingCam) -> Chart:

@@ -12,7 +12,7 @@ import numpy as np
 
 from gearcam.base.errors import DesignError, InfeasibleError, MissingExtraError, Problem
 from gearcam.cams.spec import POINTED
-from gearcam.dynamics.follower import ElasticFollower
+from gearcam.dynamics.follower import ElasticFollower, damping_of
 from gearcam.dynamics.follower_motion import settle
 from gearcam.dynamics.periodic import Periodic, elastic_jump, keeping_stiffness
 from gearcam.kinds.under_load import UnderLoad
@@ -208,7 +208,7 @@ class MovingCam:
         return ElasticFollower(
             masses=masses,
             stiffness=stiffness,
-            damping=tuple(2.0 * ratio * math.sqrt(k * m) for ratio, k, m in pairs),
+            damping=tuple(damping_of(*pair) for pair in pairs),
             spring=sum(float(one.rate) for one in loads.springs),
             damper=loads.damper,
             speed=self.speed,

@@ -95,6 +95,12 @@ SLOW: dict[str, dict[str, Any]] = {
         "spring": [{"stiffness_nm_rad": 8, "preload_nm": 4}],
         "friction": {"flank": 0.1, "joint": 0.15, "journal_radius_mm": 8},
     },
+    "elastic_valve_train": {
+        "gravity": {"direction_deg": -70},
+        "mass": [{"mass_kg": 2}, {"of": "train", "mass_kg": 3}],
+        "dynamics.contact_stiffness_n_mm": 1e9,
+        "output.studies": [],
+    },
 }  # fmt: skip
 
 
@@ -222,9 +228,99 @@ def test_residual_vibrations_are_those_of_dwells() -> None:
     assert first["residual_mm"] < 10.0 * (swing + 1e-3)
 
 
+def test_a_load_against_the_motion_jumps_where_it_turns() -> None:
+    """In the middle of a formula, too, where the lift has no knot."""
+    load = [{"force_n": 20, "against": True}]
+    design = eccentric(load=load, **{"dynamics.stiffness_n_mm": 2000, "drive.speed_rpm": 100})
+    cam = moving.MovingCam(gc.build(design))
+    assert cam.knots == pytest.approx([0.0, math.pi, 2.0 * math.pi], abs=1e-8)
+    force = cam.turn.contact_force(np.array([1.0, 4.0]))
+    s = 5.0 * (1.0 - np.cos([1.0, 4.0]))
+    assert force == pytest.approx(40.0 + 10.0 * s + np.array([20.0, -20.0]), rel=0.02)
+
+
+def test_it_begins_at_rest_where_the_periodic_motion_has_lost_contact() -> None:
+    changes = {"motion": {"lift": "5*(1 + cos(theta))"}, "drive.speed_rpm": 2700}
+    cam = moving.MovingCam(gc.build(eccentric(**changes, dynamics={
+        "stiffness_n_mm": 2000, "turns": 1})))  # fmt: skip
+    _, state = cam.turn.start
+    assert state[:2] == pytest.approx([-(40.0 + 10.0 * 10.0) / 2010.0, 0.0], abs=1e-12)
+
+
+def test_the_contact_of_hertz() -> None:
+    """Along the lift: by the mean square of the normal's share in it."""
+    study = studied("plate_cam_offset_roller", {
+        "drive.speed_rpm": 200, "mass": [{"mass_kg": 0.3}],
+        "spring": [{"stiffness_n_mm": 5, "preload_n": 60}],
+        "dynamics": {"contact_stiffness_n_mm": 1000},
+    })  # fmt: skip
+    angles = np.radians(study.result.motion()["pressure_angle_deg"][:-1])
+    along = fact(study, "contact_stiffness_n_mm")
+    assert along == pytest.approx(1000.0 * np.mean(np.cos(angles) ** 2), rel=1e-4)
+    by_hertz = studied(study.result.design, {"dynamics.contact_stiffness_n_mm": "hertz"})
+    assert 1e4 < fact(by_hertz, "contact_stiffness_n_mm") < 1e6
+
+
+def test_a_polydyne_cam_does_not_swing_at_its_speed() -> None:
+    design = gc.load("profiles/polydyne_cam.toml")
+    study = studied(design)
+    cam = moving.MovingCam(study.result)
+    x = np.linspace(0.0, 6.28, 400)
+    plain = gc.build(design.with_({"drive.polydyne": False})).program
+    place = cam.result.program.derivatives(x, 0)[0] + cam.periodic.at(x)[0]
+    wanted = plain.derivatives(x, 0)[0] - 300.0 / 2010.0
+    assert place == pytest.approx(wanted, abs=1e-12)
+    for one in fact(study, "residual"):
+        assert one["residual_mm"] < 1e-4
+    line = study.charts["speed"].lines[0]
+    assert line.x[np.argmin(line.y)] == pytest.approx(900.0)
+    assert line.y[0] > 10.0 * line.y.min()
+    assert line.y[-1] > 100.0 * line.y.min()
+    swinging = studied(design, {"drive.polydyne": False})
+    assert fact(swinging, "residual")[0]["residual_mm"] > 5e-3
+
+
+def test_a_polydyne_lift_has_its_own_derivatives() -> None:
+    program = gc.build(gc.load("profiles/polydyne_cam.toml")).program
+    x, h = np.linspace(0.05, 6.2, 200), 1e-5
+    found = program.derivatives(x, 4)
+    for order in range(1, 5):
+        high, low = (program.derivatives(x + one, order - 1)[-1] for one in (h, -h))
+        scale = np.abs(found[order]).max()
+        assert (high - low) / (2.0 * h) == pytest.approx(found[order], abs=1e-5 * scale)
+    assert program.range[1] == pytest.approx(10.0 * 2010.0 / 2000.0, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"dynamics": {}}, "needs the stiffness"),
+        ({"mass": []}, "needs the mass"),
+        ({"drive": {"polydyne": True}}, "needs a speed"),
+        ({"mass": [{"mass_kg": 1}, {"of": "train", "mass_kg": 1}]}, "of one mass"),
+        ({"dynamics.contact_stiffness_n_mm": 9}, "stiffness of the contact"),
+        ({"load": [{"formula": "s"}]}, "loads that vary"),
+        ({"spring": [{"stiffness_n_mm": "solve", "preload_n": 1}]}, 'a stiffness "solve"'),
+    ],
+)
+def test_what_a_polydyne_cam_cannot_have(changes: dict[str, Any], told: str) -> None:
+    with pytest.raises(gc.DesignError, match=told):
+        gc.load("profiles/polydyne_cam.toml").with_(changes)
+
+
+def test_a_polydyne_cam_needs_a_smooth_jerk() -> None:
+    phases = [
+        {"type": "rise", "law": "cycloidal", "angle_deg": 180, "lift_mm": 5},
+        {"type": "return", "law": "cycloidal", "angle_deg": 180},
+    ]
+    design = gc.load("profiles/polydyne_cam.toml").with_({"motion": phases})
+    with pytest.raises(gc.InfeasibleError, match=r"its jerk jumps at 0 deg .*4-5-6-7"):
+        _ = gc.build(design).program
+
+
 def test_charts_of_the_study() -> None:
     charts = studied(TRAIN).charts
-    assert list(charts) == ["contact", "lag", "acceleration", "spectrum", "residual"]
+    assert list(charts) == ["contact", "lag", "acceleration", "spectrum", "residual", "speed"]
     assert list(studied(eccentric()).charts) == ["contact", "lag", "acceleration"]
     assert [one.label for one in charts["lag"].lines] == ["mass 1", "mass 2"]
 
