@@ -45,6 +45,9 @@ _SPEEDS: Final = 61
 _INSIDE: Final = 100
 """Places of a dwell at which vibrations are looked at there."""
 
+_FARTHEST: Final = 100.0
+"""Largest time of a rise over the natural period in that chart: beyond hardly anything is left."""
+
 _NOISE: Final = 1e-9
 """Share of the largest value that is 0."""
 
@@ -378,6 +381,8 @@ def _residuals(moving: MovingCam) -> Chart:
     for phase, placed in zip(phases, result.program.stretches, strict=False):
         if isinstance(phase, RisePhase):
             ratio = np.array([frequency * (placed.end - placed.start)])
+            if ratio[0] > _FARTHEST:
+                continue
             y = residual(phase.law.build(tolerances).function, ratio)
             dots.append((f"{placed.kind} from {formatted(math.degrees(placed.start), 4)} deg",
                          ratio, y))  # fmt: skip

@@ -414,3 +414,21 @@ def test_turns_that_do_not_repeat_are_told() -> None:
     (found,) = run_checks(MOVING, subject(flights=("a", "b"), impact=1.0, repeats=False), {})
     assert "do not repeat" in found.message
     assert found.where == "a, and 1 more"
+
+
+def test_a_spring_beside_a_damper_is_solved_for_with_it() -> None:
+    """The return of a harmonic lift, closed form: the forces of statics."""
+    spring = {"stiffness_n_mm": 10, "preload_n": "solve", "damping_n_s_mm": 0.2}
+    speed = 2000.0
+    result = gc.build(eccentric(spring=[spring], **{"drive.speed_rpm": speed}))
+    w = speed * RPM
+    needed = 5.0 * math.hypot(10.0 - 0.5e-3 * w**2, 0.2 * w) - 50.0
+    found = result.study("forces").facts["forces.spring.preload_n"]
+    assert found == pytest.approx(needed, rel=1e-9)
+
+
+def test_a_damper_needs_a_speed() -> None:
+    spring = {"preload_n": 10, "damping_n_s_mm": 0.2}
+    design = gc.load("profiles/eccentric_cam.toml").with_({"spring": [spring]})
+    with pytest.raises(gc.DesignError, match="a damper acts by the speed"):
+        gc.build(design).study("forces")
