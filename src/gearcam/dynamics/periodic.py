@@ -415,7 +415,7 @@ def _dip(function: Callable[[float], float], speeds: Array) -> tuple[float, floa
     from scipy.optimize import minimize_scalar
 
     low, high = float(speeds[0]), float(speeds[2])
-    options = {"xatol": 1e-6 * high}
+    options = {"xatol": 1e-4 * high}
     found: Any = minimize_scalar(function, bounds=(low, high), method="bounded", options=options)
     return float(found.x), float(found.fun)
 
