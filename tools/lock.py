@@ -28,7 +28,6 @@ SECTIONS = {
     "sweep": ["pyproject.toml", "--extra", "sweep"],
     "optimize": ["pyproject.toml", "--extra", "optimize"],
     "stress": ["pyproject.toml", "--extra", "stress"],
-    "dynamics": ["pyproject.toml", "--extra", "dynamics"],
     "test": ["--group", "test"],
     "lint": ["--group", "lint"],
     "bench": ["--group", "bench"],
@@ -36,7 +35,9 @@ SECTIONS = {
     "lock": ["--group", "lock"],
 }
 TOOLS = ["--group", "install", "--group", "test"]
-_MORE = ["--extra", "sweep", "--extra", "optimize", "--extra", "stress", "--extra", "dynamics"]
+_MORE = [
+    word for name in ("sweep", "optimize", "stress", "dynamics") for word in ("--extra", name)
+]
 HEAD = """\
 # Written by `make lock`; installed by the Makefile, section by section.
 """

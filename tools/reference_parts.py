@@ -30,6 +30,8 @@ GROUPS: Final = {
     "errors": "Errors of mounting and making (`gearcam errors`)",
     "forces of a pair": "Forces (`gearcam forces`)",
     "stress of a pair": "Stress (`gearcam stress`)",
+    "dynamics of a machine": "Motion under a motor (`gearcam dynamics`)",
+    "forces of a pair in motion": "Forces of teeth in motion (`gearcam dynamics`)",
     "parts": "Parts",
     "cams": "Motion and profile",
     "cams in space": "Walls",

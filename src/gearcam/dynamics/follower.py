@@ -228,21 +228,14 @@ class ElasticFollower(ShortRepr):
         moving = np.array(self.masses) @ (v + rates) ** 2
         return 0.5 * (found + self.speed**2 * moving)
 
-    def reader(self) -> Reader:
-        """Return what reads its lift and loads in an integration over a turn."""
-        return Reader(self.tabled, self.knots)
-
-    def modes(self, read: Callable[[float], list[float]]) -> dict[str, Mode]:
-        """Return its equations of motion over the angle.
+    @cached_property
+    def modes(self) -> dict[str, Mode]:
+        """Its equations of motion over the angle.
 
         The state has lag and its derivative of each mass, q, and the work that is put in: that of
         the cam less what loads and dampers take.
-
-        Parameters
-        ----------
-        read : callable
-            ``read(x)`` returns lift, its first two derivatives, and the loads.
         """
+        read = self.tabled
         count, k1, c1 = len(self.masses), self.stiffness[0], self.damping[0] * self.speed
         relaxing = -k1 / c1 if c1 else 0.0
         behind = self._behind()
@@ -301,29 +294,3 @@ class ElasticFollower(ShortRepr):
             ]  # fmt: skip
 
         return two
-
-
-class Reader(ShortRepr):
-    """Reads tabled functions over a turn: at the end of a stretch from the left.
-
-    Parameters
-    ----------
-    tabled : Tabled
-        The functions.
-    knots : (k,) array
-        Its stretches.
-    """
-
-    def __init__(self, tabled: Tabled, knots: Array) -> None:
-        self._tabled = tabled
-        self._ends = dict(zip(knots[:-1].tolist(), knots[1:].tolist(), strict=True))
-        self.passed(float(knots[0]))
-
-    def passed(self, knot: float) -> None:
-        """Begin the stretch behind a knot; behind the last nothing is read."""
-        self._end = self._ends.get(knot, np.inf)
-        self._before = float(np.nextafter(self._end, -np.inf))
-
-    def __call__(self, x: float) -> list[float]:
-        """Return the values at one place."""
-        return self._tabled(self._before if x >= self._end else x)

@@ -116,8 +116,7 @@ class Turn(ShortRepr):
     def _impact(self, x: float) -> float:
         """Return the speed at which the follower meets the cam at an angle."""
         (state,) = self.motion.at([x]).T
-        read = self.follower.reader()
-        flying = self.follower.modes(read)[FLIGHT].rate(x, state)
+        flying = self.follower.modes[FLIGHT].rate(x, state)
         return abs(float(flying[2 * len(self.follower.masses)])) * self.follower.speed
 
     @cached_property
@@ -213,11 +212,10 @@ def _turn(
     follower: ElasticFollower, method: str, tolerance: float, start: tuple[str, Array]
 ) -> Motion:
     """Return the motion over a turn."""
-    read = follower.reader()
     atol: Any = tuple((tolerance * _scales(follower)).tolist())
     widest = _WIDEST * 2.0 * np.pi / follower.periods if method == "dop853" else np.inf
     integrate = Integrator(method=method, rtol=tolerance, atol=atol, widest=float(widest))
-    return integrate(follower.modes(read), start, follower.knots.tolist(), passed=read.passed)
+    return integrate(follower.modes, start, follower.knots.tolist())
 
 
 def _scales(follower: ElasticFollower) -> Array:

@@ -16,7 +16,7 @@ from typing import Any, Final
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.dynamics.integrate import Integrator, Mode, Motion, Piece, Switch
+from gearcam.dynamics.integrate import Integrator, Mode, Motion, MotionPiece, Switch
 from gearcam.dynamics.machine import Machine
 from gearcam.dynamics.motors import Motor
 from gearcam.numeric.arrays import Array
@@ -293,9 +293,10 @@ class RigidRun(ShortRepr):
         """Return the motion of a machine that does not start."""
         knots = np.array([low, float(self.machine.knots[-1])])
         motion = Motion(
+            place=float(knots[-1]),
             end=np.zeros(2),
             mode=STANDS,
-            pieces=[Piece(low, float(knots[-1]), STANDS, lambda x: np.zeros((2, len(x))))],
+            pieces=[MotionPiece(low, float(knots[-1]), STANDS, lambda x: np.zeros((2, len(x))))],
             switches=[(low, MOVES, STANDS)],
             evaluations=0,
             steps=0,

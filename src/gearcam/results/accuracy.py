@@ -23,7 +23,7 @@ from gearcam.designs.slips import did_you_mean
 from gearcam.numeric.arguments import whole
 from gearcam.pictures.charts import Chart, Line
 from gearcam.results.kind import KINDS
-from gearcam.results.ladders import Ladder
+from gearcam.results.ladders import Ladder, suits
 from gearcam.results.result import Result
 from gearcam.results.study import Progress, silent
 
@@ -205,7 +205,8 @@ def stages_of(design: Design, asked: Sequence[str] | None = None) -> tuple[str, 
     DesignError
         If the kind has no such stage; the message lists those that it has.
     """
-    stages = tuple(KINDS[design.kind].ladders)
+    every_stage = KINDS[design.kind].ladders.items()
+    stages = tuple(name for name, make in every_stage if suits(make, design))
     if asked is None and stages:
         return stages
     problems = []

@@ -89,7 +89,24 @@ class Ladder:
 
 
 Ladders = Mapping[str, Callable[[Any], Ladder]]
-"""Functions that return the ladders of a result, by the name of the stage."""
+"""Functions that return the ladders of a result, by the name of the stage.
+
+One with a method `suits` is for some designs only.
+"""
+
+
+def suits(make: Callable[[Any], Ladder], design: Any) -> bool:
+    """Return whether a ladder is one of a design's.
+
+    Parameters
+    ----------
+    make : callable
+        Of `Ladders`.
+    design : Design
+        The design.
+    """
+    asked = getattr(make, "suits", None)
+    return asked is None or bool(asked(design))
 
 
 def integral_ladder(

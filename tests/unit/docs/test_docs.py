@@ -172,6 +172,7 @@ STUDIES: dict[tuple[str, str], tuple[str, dict[str, Any]]] = {
         "circular",
         {"load": [{"torque_nm": 5}], "stress.phases": 12, "stress.wheel": 1},
     ),
+    ("gear-pair", "dynamics"): ("loaded_nail_machine", {"dynamics.inertia_kg_m2": 0.2}),
     ("gear-pair", "errors"): ("ellipse", {"errors.steps": 24}),
     ("cam", "forces"): ("valve_lever", {"forces.steps": 24}),
     ("cam", "dynamics"): ("elastic_valve_train", {"drive.speed_rpm": 1200, "dynamics.turns": 2}),
@@ -181,6 +182,7 @@ STUDIES: dict[tuple[str, str], tuple[str, dict[str, Any]]] = {
     ("spatial-cam", "forces"): ("carton_pusher", {"forces.steps": 24}),
     ("globoidal-cam", "forces"): ("rotary_table", {"forces.steps": 24}),
     ("mechanism", "torque"): ("nail_machine_slide", {"compare": []}),
+    ("mechanism", "dynamics"): ("nail_machine_flywheel", {}),
     ("mechanism", "balance"): (
         "quick_return",
         {

@@ -243,10 +243,8 @@ def test_the_rise_of_constant_acceleration_is_exact_between_knots() -> None:
 
     integrate = Integrator(method="dop853", rtol=1e-6, atol=(2e-8, 1e-6, 1.0, 1.0))
     start = CONTACT, np.zeros(4)
-    read = follower.reader()
-    modes = follower.modes(read)
-    with_knots = integrate(modes, start, [0.0, half, 1.0], passed=read.passed)
-    without = integrate(follower.modes(follower.tabled), start, [0.0, 1.0])
+    with_knots = integrate(follower.modes, start, [0.0, half, 1.0])
+    without = integrate(follower.modes, start, [0.0, 1.0])
     off, worse = (np.abs(one.at(x)[0] - closed(x)).max() for one in (with_knots, without))
     assert worse > 2.0 * off
     assert without.evaluations > 1.5 * with_knots.evaluations

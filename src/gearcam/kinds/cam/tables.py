@@ -225,7 +225,7 @@ class FollowerDynamicsSpec(ShortRepr):
     method: str = param(
         TEXT,
         default="auto",
-        choices=("auto", *METHODS),
+        choices=METHODS,
         doc="integrator; auto: dop853 up to 100 natural periods in a turn, else radau",
     )
     tolerance: float = param(

@@ -14,6 +14,7 @@ from gearcam.base.findings import run_checks
 from gearcam.base.numerals import formatted
 from gearcam.gears.pair import COARSEST, FINEST, FLANK_POINTS, make_gear
 from gearcam.gears.track import WHEELS
+from gearcam.kinds.gear_pair.method_ladders import METHOD_LADDERS
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.piecewise import Piecewise
 from gearcam.numeric.sampling import Sampler
@@ -382,4 +383,5 @@ LADDERS: Final[Ladders] = {
     "outline": _outline,
     "solid": _solid,
     "contact": _contact,
+    **METHOD_LADDERS,
 }
