@@ -67,7 +67,14 @@ class Train(ShortRepr):
 
 
 def polydyne(program: Program, train: Train) -> Program:
-    """Return the lift of a cam that moves the mass of a `train` as a `program` says.
+    """Return the lift of a cam that moves the mass of a train as a program says.
+
+    Parameters
+    ----------
+    program : Program
+        The motion of the mass.
+    train : Train
+        What is between it and the cam.
 
     Raises
     ------

@@ -70,8 +70,8 @@ def corrected(design: Any, program: Program) -> Program:
     from gearcam.dynamics.follower import damping_of
     from gearcam.dynamics.polydyne import Train, polydyne
 
-    dynamics, swings = design.dynamics, design.follower.oscillating
-    mass = sum(one.acting(angular=swings) for one in design.mass)
+    dynamics = design.dynamics
+    mass = sum(one.acting(angular=design.follower.oscillating) for one in design.mass)
     train = Train(
         mass=mass,
         stiffness=dynamics.train,

@@ -261,8 +261,10 @@ def test_the_contact_of_hertz() -> None:
     assert 1e4 < fact(by_hertz, "contact_stiffness_n_mm") < 1e6
 
 
-def test_a_polydyne_cam_does_not_swing_at_its_speed() -> None:
-    design = gc.load("profiles/polydyne_cam.toml")
+@pytest.mark.parametrize("damping", [0.0, 0.1])
+def test_a_polydyne_cam_does_not_swing_at_its_speed(damping: float) -> None:
+    spring = {"stiffness_n_mm": 10, "preload_n": 300, "damping_n_s_mm": damping}
+    design = gc.load("profiles/polydyne_cam.toml").with_({"spring": [spring]})
     study = studied(design)
     cam = moving.MovingCam(study.result)
     x = np.linspace(0.0, 6.28, 400)
@@ -271,11 +273,11 @@ def test_a_polydyne_cam_does_not_swing_at_its_speed() -> None:
     wanted = plain.derivatives(x, 0)[0] - 300.0 / 2010.0
     assert place == pytest.approx(wanted, abs=1e-12)
     for one in fact(study, "residual"):
-        assert one["residual_mm"] < 1e-4
+        assert one["residual_mm"] < 2e-4
     line = study.charts["speed"].lines[0]
     assert line.x[np.argmin(line.y)] == pytest.approx(900.0)
-    assert line.y[0] > 10.0 * line.y.min()
-    assert line.y[-1] > 100.0 * line.y.min()
+    assert line.y[0] > 5.0 * line.y.min()
+    assert line.y[-1] > 50.0 * line.y.min()
     swinging = studied(design, {"drive.polydyne": False})
     assert fact(swinging, "residual")[0]["residual_mm"] > 5e-3
 
