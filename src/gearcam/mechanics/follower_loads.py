@@ -177,7 +177,7 @@ class Loads(ShortRepr):
     @cached_property
     def inertia(self) -> float:
         """Mass, kg, or moment of inertia, kg m2, times the unit of output over that inside."""
-        return sum(one.acting(angular=self.follower.angular) for one in self.masses)
+        return sum(one.acting(oscillating=self.follower.angular) for one in self.masses)
 
     @cached_property
     def damper(self) -> float:

@@ -47,9 +47,9 @@ class MassSpec(ShortRepr):
 
     rules = (needs("center", "mass"),)
 
-    def acting(self, *, angular: bool) -> float:
-        """Return its mass, N s2/mm, or of what swings (`angular`) its inertia, N mm s2."""
-        return 1e3 * (self.inertia or 0.0) if angular else 1e-3 * (self.mass or 0.0)
+    def acting(self, *, oscillating: bool) -> float:
+        """Return its mass, N s2/mm, or of what swings (`oscillating`) its inertia, N mm s2."""
+        return 1e3 * (self.inertia or 0.0) if oscillating else 1e-3 * (self.mass or 0.0)
 
     def problems(self) -> Iterator[Breach]:
         """Yield contradictions: field, index, message, what is allowed."""

@@ -282,8 +282,8 @@ def test_the_jump_of_the_elastic_train() -> None:
         follower = replace(TRAIN, speed=speed)
         return follower.contact_force(Periodic(follower).at(x)).min()
 
-    reference = brentq(sampled, 1100.0 * RPM, 1150.0 * RPM, xtol=1e-6) / RPM
-    assert reference == pytest.approx(1131.858, abs=6e-4)
+    reference: Any = brentq(sampled, 1100.0 * RPM, 1150.0 * RPM, xtol=1e-6)
+    assert reference / RPM == pytest.approx(1131.858, abs=6e-4)
 
 
 def test_no_lower_speed_jumps() -> None:
@@ -303,7 +303,8 @@ def test_a_resonance_that_jumps_is_not_missed() -> None:
     one = replace(TRAIN, masses=(0.5e-3,), stiffness=(2000.0,), damping=(0.01,), spring=0.0)
     follower = replace(one, loads=acting(409.0))
     found = elastic_jump(follower)
-    assert found == pytest.approx(117.6, abs=1.0)
+    assert found is not None
+    assert 116.6 < found < 118.6
     assert Periodic(replace(follower, speed=1.04 * found)).least()[0] > 0.0
 
 

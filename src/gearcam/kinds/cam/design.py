@@ -44,7 +44,7 @@ from gearcam.kinds.cam.tables import (
 )
 from gearcam.kinds.follower_tables import load_faults
 from gearcam.kinds.shared import AccuracySpec, ForcesSpec, GoalSpec
-from gearcam.mechanics.drive import CamDriveSpec, SlideDriveSpec
+from gearcam.mechanics.drive import DriveSpec
 from gearcam.mechanics.friction import FrictionSpec
 from gearcam.mechanics.gravity import GravitySpec
 from gearcam.mechanics.load import FORCES, LoadSpec
@@ -119,7 +119,7 @@ class CamDesign(Design):
     motion: Motion
     follower: FollowerSpec
     cam: CamSpec
-    drive: CamDriveSpec | SlideDriveSpec = field(default_factory=CamDriveSpec)
+    drive: DriveSpec = field(default_factory=DriveSpec)
     load: tuple[LoadSpec, ...] = ()
     blank: WheelBlank | PlateBlank = field(default_factory=CamBlank)
     output: CamOutputSpec = field(default_factory=CamOutputSpec)

@@ -71,7 +71,7 @@ def corrected(design: Any, program: Program) -> Program:
     from gearcam.dynamics.polydyne import Train, polydyne
 
     dynamics = design.dynamics
-    mass = sum(one.acting(angular=design.follower.oscillating) for one in design.mass)
+    mass = sum(one.acting(oscillating=design.follower.oscillating) for one in design.mass)
     train = Train(
         mass=mass,
         stiffness=dynamics.train,

@@ -17,7 +17,7 @@ RPM = math.pi / 30.0
 TRAIN = gc.load("profiles/elastic_valve_train.toml")
 
 
-def studied(design: gc.Design | str, changes: dict[str, Any] | None = None) -> gc.StudyResult:
+def studied(design: gc.Design | str, changes: dict[str, Any] | None = None) -> Any:
     found = gc.load(f"profiles/{design}.toml") if isinstance(design, str) else design
     return gc.build(found.with_(changes or {})).study("dynamics")
 
