@@ -46,6 +46,7 @@ GROUPS: Final = {
     "solids of globoidal cams": "Solids",
     "solids of cams in space": "Solids",
     "forces": "Forces (`gearcam forces`)",
+    "followers in motion": "Dynamics (`gearcam dynamics`)",
     "followed profiles": "Followed profile (`gearcam follow`)",
     "precision of cams": "Precision (`gearcam precision`)",
     "fitted lifts": "Fitted lift (`gearcam follow --fit`)",

@@ -97,6 +97,7 @@ STUDIES: Final = studies_of(
         table="dynamics",
         compute=deferred(f"{_HERE}.dynamics:study_dynamics"),
         demand=deferred(f"{_HERE}.dynamics:demand"),
+        alike=False,
         elsewhere={"speed": "drive[0].speed_rpm"},
         repeats=("loads-unused",),
     ),
