@@ -42,7 +42,7 @@ class MovingMachine(ShortRepr):
     place: Callable[[float], str]
 
 
-@check("stalls", kind=DYNAMICS, severity="error", unit="N m")
+@check("stalls", kind=DYNAMICS, severity=("error", "note"), unit="N m")
 def stalls(moving: MovingMachine, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Report that the machine stops, and the torque that it lacks there.
 
@@ -57,8 +57,11 @@ def stalls(moving: MovingMachine, limit: float) -> Iterator[Remark]:  # noqa: AR
     message = "The machine stops here."
     if motion.motor is not None and driving:
         message = "The motor does not turn the load here, and the machine stops."
-    severity = "note" if not driving else "error"  # it was to coast
-    yield Remark(message, moving.place(stopped), max(float(lack), 0.0), severity)
+    lacks = max(float(lack), 0.0)
+    if driving:
+        yield Remark(message, moving.place(stopped), lacks, "error")
+    else:  # it was to coast
+        yield Remark(message, moving.place(stopped), lacks, "note")
 
 
 @check("irregularity", kind=DYNAMICS, unit="", relation="at most")

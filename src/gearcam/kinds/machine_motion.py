@@ -108,7 +108,15 @@ def _problem(motor: MotorSpec, run: str, speed: float | None, key: str) -> Probl
 
 
 def usual_speed(motor: MotorSpec, speed: float | None) -> float:
-    """Return a usual speed of a driver, rad/s: its mean speed if that is given."""
+    """Return a usual speed of a driver, rad/s.
+
+    Parameters
+    ----------
+    motor : MotorSpec
+        Its motor.
+    speed : float or None, rad/s
+        Its mean speed, which is taken if it is given.
+    """
     made = motor_of(motor)
     return speed or (made.scale if made is not None else 0.0) or 1.0
 

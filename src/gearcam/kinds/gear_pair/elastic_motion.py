@@ -20,7 +20,7 @@ from gearcam.dynamics.mesh_stiffness import Smooth, backlash_angle, mesh_stiffne
 from gearcam.dynamics.settings import VIBRATION
 from gearcam.dynamics.stiff import APART, COAST, StiffPair
 from gearcam.dynamics.tabled import Tabled
-from gearcam.kinds.gear_pair.dynamics import PairRun
+from gearcam.kinds.gear_pair.pair_motion import PairRun
 from gearcam.mechanics.wheel_load import WheelLoadSpec
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Line, MarkedPlace

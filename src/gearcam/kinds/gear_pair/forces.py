@@ -406,7 +406,24 @@ def _facts(under: PairUnderLoad, loaded: LoadedPair) -> Tree:
 def extreme_fact(
     loaded: LoadedPair, values: Array, label: str, unit: str, rows: Ints | None = None
 ) -> Fact | None:
-    """Return the range of some values, with the place of the largest, as a fact."""
+    """Return the range of some values, with the place of the largest, as a fact.
+
+    Parameters
+    ----------
+    loaded : LoadedPair
+        The forces.
+    values : (n,) or (k,) array
+        Of phases, or of contacts.
+    label, unit : str
+        Of the fact.
+    rows : (k,) int array, optional
+        Phases of the contacts.
+
+    Returns
+    -------
+    Fact or None
+        None if no value is known.
+    """
     if np.isnan(values).all():
         return None
     ends = extent(float(np.nanmin(values)), float(np.nanmax(values)))

@@ -334,6 +334,10 @@ class MechanismDesign(Design):
         What is balanced in two planes.
     torque : TorqueSpec
         Settings of the study of the driver's moment.
+    motor : MotorSpec
+        What turns the driver.
+    dynamics : DynamicsSpec
+        Settings of the study of dynamics.
     output : MechanismOutput
         Files and what is in them.
     accuracy : AccuracySpec
