@@ -28,7 +28,7 @@ PYTHON ?=
 
 # Sections of requirements.lock to install; `make matrix` sets others.
 RUN    := run install
-TEST   := $(RUN) step plot sweep optimize stress test
+TEST   := $(RUN) step plot sweep optimize stress dynamics test
 
 # Two processes with a thread each, as the command has; what was compiled is kept, as compiling the
 # tests anew takes 10 s. Each process has half of the tests, in order, so that what tests of a file

@@ -425,6 +425,20 @@ def _release(preload: float) -> float:
     return low
 
 
+def _rigid_jump() -> float:
+    """Lowest speed, rpm, at which 200 N and 10 N/mm lose 0.7 kg on a cycloidal rise of 10 mm."""
+    width = math.pi / 2
+
+    def square(t: Any) -> Any:
+        lift = 10 * (t - mp.sin(2 * mp.pi * t) / (2 * mp.pi))
+        falling = -10 * 2 * mp.pi * mp.sin(2 * mp.pi * t) / width**2
+        return (200 + 10 * lift) / (0.7e-3 * falling)
+
+    with mp.workdps(25):
+        place = mp.findroot(lambda t: mp.diff(square, t), 0.74)
+        return float(mp.sqrt(square(place))) * 30 / math.pi
+
+
 def _edge(angle: float, lift: float, limit: float) -> float:
     """Largest s'/tan(limit) - s of a cycloidal rise: where s'' = s'*tan(limit); deg, mm."""
     beta, slope = math.radians(angle), math.tan(math.radians(limit))
@@ -567,6 +581,16 @@ CAM_NUMBERS: dict[str, dict[str, Number]] = {
     "valve_train": {
         "motion.peak_velocity_mm_s": (15 / 8 * 9 / OPENING, 1e-12),
         "forces.spring.preload_n": (PRELOAD, 1e-8),
+    },
+    "polydyne_cam": {
+        "motion.lift.max": (10 * (1 + 10 / 2000), 1e-6),
+        "dynamics.natural_frequency_hz[0]": (math.sqrt(2010 / 0.5e-3) / (2 * math.pi), 1e-10),
+    },
+    "elastic_valve_train": {
+        "dynamics.jump_rpm.rigid": (_rigid_jump, 1e-8),
+        "dynamics.jump_rpm.elastic": (1131.858, 2e-3),  # apart from the project, by samples
+        "dynamics.natural_frequency_hz[0]": (1908.90150566 / (2 * math.pi), 1e-8),
+        "dynamics.natural_frequency_hz[1]": (10506.0028099 / (2 * math.pi), 1e-8),
     },
     "valve_tolerances": {
         "motion.peak_velocity_mm_s": (15 / 8 * 9 / OPENING, 1e-12),

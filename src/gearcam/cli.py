@@ -108,9 +108,8 @@ def _dispatch(words: list[str]) -> int:
 def _commands() -> Iterator[Command]:
     """Yield the commands: general ones, then those of studies."""
     yield from _COMMANDS
-    studies = {one.name: (one, kind) for kind in KINDS.values() for one in kind.studies.values()}
-    for name in sorted(studies):
-        yield study_command(*studies[name])
+    for name in sorted({name for kind in KINDS.values() for name in kind.studies}):
+        yield study_command(name)
 
 
 def _command(word: str) -> Command | None:
@@ -118,7 +117,7 @@ def _command(word: str) -> Command | None:
     # those known here first: only then are other packages asked
     for kind in KINDS.values() if word not in _GENERAL else ():
         if word in kind.study_tables:
-            return study_command(kind.studies[word], kind)
+            return study_command(word)
     return next((one for one in _commands() if one.name == word), None)
 
 

@@ -101,15 +101,21 @@ def refuse(problems: Sequence[Problem]) -> NoReturn:
 # --- studies -------------------------------------------------------------------------------------
 
 
-def study_command(study: Study, kind: Kind) -> Command:
-    """Return the command of a `study` of a `kind` of design that has it."""
+def study_command(name: str) -> Command:
+    """Return the command of the study of a `name`, with the options of each kind that has it."""
+    having = (kind for kind in KINDS.values() if name in kind.study_tables)
+    kinds = [next(having)]
+    study = kinds[0].studies[name]
+    kinds += [] if study.alike else having
 
     def arguments(parser: argparse.ArgumentParser) -> None:
-        kind.titles_with([study.table])  # it may be of another package
         number = "+" if study.many else None
         parser.add_argument("designs", nargs=number, metavar="FILE", help="design file (TOML)")
         add_output(parser)
-        _add_settings(study, kind, parser)
+        taken: set[str] = set()
+        for kind in kinds:
+            kind.titles_with([study.table])  # it may be of another package
+            _add_settings(kind.studies[name], kind, parser, taken)
 
     def run(options: Options) -> int:
         settings = dict(options)
@@ -126,9 +132,17 @@ def study_command(study: Study, kind: Kind) -> Command:
     return Command(study.name, study.doc, run, arguments)
 
 
-def _add_settings(study: Study, kind: Kind, parser: argparse.ArgumentParser) -> None:
-    """Add an option for each key of a study's settings, which it overrides, to a `parser`."""
+def _add_settings(
+    study: Study, kind: Kind, parser: argparse.ArgumentParser, taken: set[str]
+) -> None:
+    """Add an option for each key of a study's settings, which it overrides, to a `parser`.
+
+    Those that are `taken` it has already, of another kind.
+    """
     for key, entry in kind.table(study.table).entries.items():
+        if key in taken:
+            continue
+        taken.add(key)
         words: dict[str, Any] = {"help": entry.param.doc}
         if key == study.argument:
             parser.add_argument(key, metavar=study.metavar or key.upper(), **words)
@@ -147,6 +161,9 @@ def _add_settings(study: Study, kind: Kind, parser: argparse.ArgumentParser) -> 
         name = study.options.get(key, plain)
         parser.add_argument(f"--{name}", dest=key, **words)
     for name, key in study.elsewhere.items():
+        if name in taken:
+            continue
+        taken.add(name)
         unit = unit_of(key).upper()
         words = {"type": float, "metavar": unit, "help": f"another {key}"}
         parser.add_argument(f"--{name}", dest=f"--{name}", **words)

@@ -42,7 +42,7 @@ def sections(lock: str) -> dict[str, list[Locked]]:
     """The packages of each section."""
     parts = re.split(r"^# for (\w+)\n", lock, flags=re.MULTILINE)
     return {
-        name: [read(entry) for entry in re.split(r"\n(?=\w)", text.strip())]
+        name: [read(entry) for entry in re.split(r"\n(?=\w)", text.strip()) if entry]
         for name, text in zip(parts[1::2], parts[2::2], strict=True)
     }
 
@@ -97,7 +97,7 @@ def test_what_builds_gearcam_is_locked() -> None:
 
 def test_the_lowest_versions_are_the_bounds() -> None:
     locked = {one.pin.name: one.version for one in SECTIONS["lowest"]}
-    extras = ("run", "step", "plot", "sweep", "optimize", "stress")
+    extras = ("run", "step", "plot", "sweep", "optimize", "stress", "dynamics")
     asked = [Requirement(line) for name in extras for line in WANTED[name]]
     for requirement in asked:
         (bound,) = [one.version for one in requirement.specifier if one.operator == ">="]
@@ -129,6 +129,7 @@ def test_each_target_takes_its_sections_and_no_other() -> None:
         "sweep",
         "optimize",
         "stress",
+        "dynamics",
         "test",
     ]
     assert taken("lint") == [*taken("test"), "lint"]

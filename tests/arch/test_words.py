@@ -36,11 +36,11 @@ ELSEWHERE = {
         "stress_field.py",
     ),
     "feeds?": ("simple.py", "tool.py", "milling.py", "milled.py", "gcode.py"),
-    "idle": ("numerals.py", "paper.py"),
+    "idle": ("numerals.py", "paper.py", "motor.py", "motors.py"),
     "halves": ("sampling.py", "openings.py"),
 }
 """Files and folders in which a word is the field's own, or plain English: strokes of a pen or
-slide, machine feeds, idle zeros of a number, halves of an interval."""
+slide, machine feeds, idle zeros of a number and speeds of motors, halves of an interval."""
 
 TERMS = (
     "centrode", "addendum curve", "form point", "fillet interference", "backlash", "contact ratio",

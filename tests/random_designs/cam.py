@@ -15,7 +15,7 @@ from random_designs.blank import blank
 from random_designs.draw import Draw, short
 from random_designs.goals import seek
 from random_designs.laws import random_motion_law
-from random_designs.output import asked, drive, forces, studies
+from random_designs.output import asked, drive, dynamics, forces, studies
 
 FOLLOWERS: Final = ("knife-edge", "roller", "flat", "domed", "point", "roller", "flat", "domed")
 """Followers, which take turns; a point is a knife edge."""
@@ -330,6 +330,7 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     made["output"] |= asked(d, _SHARES)
     drive(d, made, "speed_mm_s" if made["cam"].get("form") == "translating" else "speed_rpm")
     forces(d, made, swings)
+    dynamics(d, made, swings)
     if made["cam"].get("form", "disc") == "disc" and d.chance(0.06):
         _solved(d, made, size)
     _studies(d, made, size)

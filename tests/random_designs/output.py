@@ -132,6 +132,41 @@ def forces(d: Draw, design: dict[str, Any], swings: bool) -> None:
         design["output"]["studies"] = ["forces"]
 
 
+def dynamics(d: Draw, design: dict[str, Any], swings: bool) -> None:
+    """Give an elastic train to a few cams with loads, and ask for their dynamics.
+
+    Parameters
+    ----------
+    d : Draw
+        Random numbers of this design.
+    design : dict
+        The design, which is changed.
+    swings : bool
+        Whether the follower swings.
+    """
+    if "mass" not in design or not d.chance(0.3):
+        return
+    unit, spring = "nm_rad" if swings else "n_mm", design["spring"][0]
+    made: dict[str, Any] = {f"stiffness_{unit}": short(d.log(100, 1e5))}
+    if d.chance(0.5):
+        blunt = design["follower"]["type"] not in ("roller", "domed")
+        made["contact_stiffness_n_mm"] = short(d.log(1e3, 1e6)) if blunt else "hertz"
+        if d.chance(0.5):
+            design["mass"].append({**design["mass"][0], "of": "train"})
+    if d.chance(0.5):
+        made["damping_ratio"] = [short(d.even(0.03, 0.2)), short(d.even(0.03, 0.2))]
+    if d.chance(0.3):
+        made |= {"method": d.pick(["radau", "bdf", "lsoda"]), "tolerance": 1e-5}
+    if d.chance(0.3):
+        spring["damping_nm_s_rad" if swings else "damping_n_s_mm"] = short(d.log(1e-4, 0.1))
+    design["dynamics"] = made | {"turns": d.whole(1, 3)}
+    if design["cam"].get("form") != "translating":
+        design["output"]["studies"] = ["dynamics"]
+        if len(design["mass"]) == 1 and "contact_stiffness_n_mm" not in made and d.chance(0.3):
+            design["drive"]["polydyne"] = True
+            design["load"] = []
+
+
 def forces_in_space(d: Draw, design: dict[str, Any], swings: bool) -> None:
     """Give a few cylinder cams loads, as `forces` does; their guide stands beside the cam."""
     before = design["output"].get("studies", [])

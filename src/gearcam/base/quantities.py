@@ -248,6 +248,7 @@ _ALIASES: Final = {
     r"^RowOfSome$": 'row of float or "solve"',
     r"^Row$": "row of float",
     r"float \| Solve": 'float or "solve"',
+    r"float \| Hertz": 'float or "hertz"',
     r"^Given$": "str, function, or tuple of function and derivatives",
 }
 """Names of types in docstrings."""

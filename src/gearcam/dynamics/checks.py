@@ -4,11 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.findings import Remark, check
-from gearcam.dynamics.rigid import RigidMotion
-from gearcam.dynamics.settings import DYNAMICS
+from gearcam.base.quantities import NUMBER, Param
+from gearcam.dynamics.motion import MachineMotion
+from gearcam.dynamics.settings import DYNAMICS, VIBRATION
+from gearcam.dynamics.stiff import LostContact
+from gearcam.numeric.arrays import Array
 
 _BALANCED = 100.0
 """Largest residue of the energy balance, in tolerances."""
@@ -20,7 +26,7 @@ class MovingMachine(ShortRepr):
 
     Parameters
     ----------
-    motion : RigidMotion
+    motion : MachineMotion
         Its motion.
     wanted : float or None
         The irregularity that is wanted.
@@ -30,13 +36,13 @@ class MovingMachine(ShortRepr):
         ``place(phi)`` returns an angle of the driver in words.
     """
 
-    motion: RigidMotion
+    motion: MachineMotion
     wanted: float | None
     tolerance: float
     place: Callable[[float], str]
 
 
-@check("stalls", kind=DYNAMICS, severity="error", unit="N m")
+@check("stalls", kind=DYNAMICS, severity=("error", "note"), unit="N m")
 def stalls(moving: MovingMachine, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Report that the machine stops, and the torque that it lacks there.
 
@@ -51,8 +57,11 @@ def stalls(moving: MovingMachine, limit: float) -> Iterator[Remark]:  # noqa: AR
     message = "The machine stops here."
     if motion.motor is not None and driving:
         message = "The motor does not turn the load here, and the machine stops."
-    severity = "note" if not driving else "error"  # it was to coast
-    yield Remark(message, moving.place(stopped), max(float(lack), 0.0), severity)
+    lacks = max(float(lack), 0.0)
+    if driving:
+        yield Remark(message, moving.place(stopped), lacks, "error")
+    else:  # it was to coast
+        yield Remark(message, moving.place(stopped), lacks, "note")
 
 
 @check("irregularity", kind=DYNAMICS, unit="", relation="at most")
@@ -81,3 +90,74 @@ def energy(moving: MovingMachine, limit: float) -> Iterator[Remark]:  # noqa: AR
         yield Remark(
             "Works and energy do not balance: a smaller tolerance.", "", residue, limit=most
         )
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class VibratingTeeth(ShortRepr):
+    """Elastic teeth in motion, over a turn.
+
+    Parameters
+    ----------
+    lost : list of LostContact
+        Where they are apart.
+    phi1 : (n,) array, rad
+        Places of the turn.
+    ratio : (n,) array
+        Frequency of the teeth over the natural frequency there.
+    place : callable
+        ``place(phi1)`` returns an angle in words.
+    """
+
+    lost: list[LostContact]
+    phi1: Array
+    ratio: Array
+    place: Callable[[float], str]
+
+
+@check("contact-lost", kind=VIBRATION)
+def contact_lost(teeth: VibratingTeeth, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Warn of teeth that part, cross the backlash and hit.
+
+    Looks at: the lag of the driven wheel, against the backlash.
+    """
+    hits = [one for one in teeth.lost if one.onto]
+    if not hits:
+        return
+    worst = max(hits, key=lambda one: one.impact)
+    times = f"{len(hits)} times a turn" if len(hits) > 1 else "once a turn"
+    message = (
+        f"Teeth part {times}, and hit: less backlash, an even load on the driven wheel, or less "
+        "inertia keeps them together."
+    )
+    yield Remark(message, teeth.place(worst.high), worst.impact, unit="rad/s")
+
+
+_RESONANCE: Final = (
+    "speed_ratio_resonance",
+    Param(
+        NUMBER,
+        ge=0,
+        le=0.5,
+        doc="how near the frequency of the teeth may be to the natural one, or to half of it",
+    ),
+    0.1,
+)
+
+
+@check("resonance", kind=VIBRATION, limit=_RESONANCE, relation="about", severity="note")
+def resonance(teeth: VibratingTeeth, limit: float) -> Iterator[Remark]:
+    """Note where teeth come as often as their mesh vibrates by itself, or half as often.
+
+    Looks at: pitches that pass per second, and the natural frequency, at each angle.
+    """
+    for whole, words in ((1.0, "the natural frequency"), (0.5, "half the natural frequency")):
+        near = np.abs(teeth.ratio / whole - 1.0)
+        worst = int(near.argmin())
+        if near[worst] <= limit:
+            yield Remark(
+                f"Teeth come at {words} of their mesh here: another speed, inertia or stiffness "
+                "avoids the resonance.",
+                teeth.place(float(teeth.phi1[worst])),
+                float(teeth.ratio[worst]),
+                limit=whole,
+            )

@@ -200,11 +200,14 @@ class Integrator(ShortRepr):
         Tolerance of a step, relative to the state.
     atol : tuple of float
         The same, absolute, for each part of the state.
+    widest : float
+        Largest step: within wider ones of DOP853 the state is less exact than at their ends.
     """
 
     method: str
     rtol: float
     atol: tuple[float, ...]
+    widest: float = np.inf
 
     def __call__(
         self,
@@ -326,9 +329,8 @@ class _Run:
         given, method = self._integrator, self._choice.method if self._choice else None
         method = method or given.method
         width = None if self._width is None else min(self._width, end - x)
-        return self._made[method](
-            mode.rate, x, y, end, rtol=given.rtol, atol=given.atol, first_step=width
-        )
+        settings = {"rtol": given.rtol, "atol": given.atol, "max_step": given.widest}
+        return self._made[method](mode.rate, x, y, end, first_step=width, **settings)
 
     def _kept(self, solver: Any, name: str, mode: Mode) -> tuple[float, Array, str] | None:
         """Keep the last step; return where it switches, the state there and the next mode."""

@@ -58,7 +58,13 @@ class Machine(ABC, ShortRepr):
 
     @abstractmethod
     def load(self, row: Any, omega: Any) -> Any:
-        """Return the torque at the driver that loads alone resist with, without losses, N m."""
+        """Return the torque at the driver that loads alone resist with, without losses, N m.
+
+        Parameters
+        ----------
+        row, omega
+            See `resistance`.
+        """
 
     @abstractmethod
     def resistance(self, row: Any, omega: Any, driving: Any) -> Any:
@@ -90,7 +96,15 @@ class Machine(ABC, ShortRepr):
 
 
 def polynomial(coefficients: Sequence[Any], x: Any) -> Any:
-    """Return a polynomial's value; the lowest coefficient first."""
+    """Return a polynomial's value.
+
+    Parameters
+    ----------
+    coefficients : sequence of float or (n,) array
+        The lowest first.
+    x : float or (n,) array
+        Its variable.
+    """
     value = coefficients[-1]
     for one in coefficients[-2::-1]:
         value = value * x + one
@@ -125,12 +139,13 @@ class PairMachine(Machine):
         """Return its derivative."""
         return 2.0 * self.driven * row[0] * row[1]
 
-    def _driven_load(self, row: Any, omega: Any) -> Any:
+    def driven_load(self, row: Any, omega: Any) -> Any:
+        """Return the load on the driven wheel, N m (see `resistance`)."""
         return self.share * polynomial(row[4 if self.rubs else 2 :], omega)
 
     def load(self, row: Any, omega: Any) -> Any:
-        """Return the load at the driver."""
-        return row[0] * self._driven_load(row, omega)
+        """Return the load at the driver (see `Machine.load`)."""
+        return row[0] * self.driven_load(row, omega)
 
     def mesh_torque(self, row: Any, omega: Any, driving: Any) -> tuple[Any, Any]:
         """Return the torque of the teeth on the driven wheel, N m, and ``kappa - i``.
@@ -140,7 +155,7 @@ class PairMachine(Machine):
         row, omega, driving
             See `resistance`.
         """
-        ratio, load = row[0], self._driven_load(row, omega)
+        ratio, load = row[0], self.driven_load(row, omega)
         carried = load + self.driven * row[1] * omega * omega
         if driving is not None:
             driver = self.driver + self.flywheel
@@ -151,7 +166,7 @@ class PairMachine(Machine):
         return carried / (driver + (ratio + more) * self.driven * ratio), more
 
     def resistance(self, row: Any, omega: Any, driving: Any) -> Any:
-        """Return the torque that resists."""
+        """Return the torque that resists (see `Machine.resistance`)."""
         if not self.rubs:
             return self.load(row, omega)
         torque, more = self.mesh_torque(row, omega, driving)
@@ -171,9 +186,9 @@ class ReducedMachine(Machine):
         return row[1]
 
     def load(self, row: Any, omega: Any) -> Any:
-        """Return the load."""
+        """Return the load (see `Machine.load`)."""
         return self.share * polynomial(row[2:], omega)
 
     def resistance(self, row: Any, omega: Any, driving: Any) -> Any:  # noqa: ARG002
-        """Return the torque that resists: nothing is lost."""
+        """Return the torque that resists, without losses (see `Machine.resistance`)."""
         return self.load(row, omega)

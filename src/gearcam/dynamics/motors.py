@@ -45,31 +45,34 @@ class Motor(ABC, ShortRepr):
 
 @dataclass(frozen=True)
 class ConstantMotor(Motor):
-    """A motor with the same torque at all speeds; of 0 the machine coasts."""
+    """A motor with a torque of one `size`, N m, at all speeds; of 0 the machine coasts."""
 
     size: float = 0.0
 
     def torque(self, phi: Any, omega: Any) -> Any:  # noqa: ARG002
-        """Return its torque."""
+        """Return its torque (see `Motor.torque`)."""
         return self.size + 0.0 * omega
 
 
 @dataclass(frozen=True)
 class SpringMotor(Motor):
-    """A wound spring, whose torque falls with the angle until it is unwound."""
+    """A wound spring: a torque at the `start`, N m, and its `fall` per rad until it is unwound."""
 
     start: float
     fall: float
 
     def torque(self, phi: Any, omega: Any) -> Any:
-        """Return ``start - fall*phi``, 0 at least."""
+        """Return ``start - fall*phi``, 0 at least (see `Motor.torque`)."""
         left = self.start - self.fall * phi
         return 0.5 * (left + abs(left)) + 0.0 * omega
 
 
 @dataclass(frozen=True)
 class LinearMotor(Motor):
-    """A motor whose torque falls evenly with the speed (5.20)."""
+    """A motor whose torque falls evenly with the speed (5.20).
+
+    It has that of the `start`, N m, at rest, and none at its `idle` speed, rad/s.
+    """
 
     start: float
     idle: float
@@ -82,13 +85,23 @@ class LinearMotor(Motor):
         return self.idle
 
     def torque(self, phi: Any, omega: Any) -> Any:  # noqa: ARG002
-        """Return ``start*(1 - omega/idle)``."""
+        """Return ``start*(1 - omega/idle)`` (see `Motor.torque`)."""
         return self.start * (1.0 - omega / self.idle)
 
 
 @dataclass(frozen=True)
 class AsynchronousMotor(Motor):
-    """An induction motor, by Kloss's formula ``M = 2*Mk/(s/sk + sk/s)``."""
+    """An induction motor, by Kloss's formula ``M = 2*Mk/(s/sk + sk/s)``.
+
+    Parameters
+    ----------
+    breakdown : float, N m
+        Its largest torque Mk.
+    slip : float
+        The slip sk there.
+    synchronous : float, rad/s
+        The speed without slip.
+    """
 
     breakdown: float
     slip: float
@@ -102,14 +115,14 @@ class AsynchronousMotor(Motor):
         return self.synchronous
 
     def torque(self, phi: Any, omega: Any) -> Any:  # noqa: ARG002
-        """Return its torque; above the synchronous speed it brakes."""
+        """Return its torque; above the synchronous speed it brakes (see `Motor.torque`)."""
         s = 1.0 - omega / self.synchronous
         return 2.0 * self.breakdown * s * self.slip / (s * s + self.slip * self.slip)
 
 
 @dataclass(frozen=True)
 class TableMotor(Motor):
-    """A motor with torques at some speeds: a monotone cubic through them (Fritsch, Butland)."""
+    """Torques of some `sizes`, N m, at `speeds`, rad/s: a monotone cubic (Fritsch, Butland)."""
 
     speeds: tuple[float, ...]
     sizes: tuple[float, ...]
@@ -141,7 +154,7 @@ class TableMotor(Motor):
         return [*self.speeds[1:-1]], [tuple(one) for one in powers.T.tolist()], powers
 
     def torque(self, phi: Any, omega: Any) -> Any:  # noqa: ARG002
-        """Return its torque; beyond its speeds it goes on along the last chord."""
+        """Return its torque; beyond its speeds along the last chord (see `Motor.torque`)."""
         inner, cells, powers = self._cells
         if isinstance(omega, np.ndarray):
             within = np.minimum(omega, self.highest)

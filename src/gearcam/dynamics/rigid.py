@@ -89,7 +89,7 @@ class RigidMotion(ShortRepr):
         return self.motion.at(phi)[1]
 
     def driving(self, phi: Array, omega: Array) -> Array | None:
-        """Return the torque of the motor, N m; None at an even speed."""
+        """Return the torque of the motor, N m; None at an even speed (see `Motor.torque`)."""
         return None if self.motor is None else self.motor.torque(phi, omega)
 
     def torques(self, phi: Array) -> tuple[Array, Array, Array]:
@@ -199,7 +199,7 @@ class RigidRun(ShortRepr):
     rtol: float = 1e-9
 
     def energy(self, phi: float, omega: float) -> float:
-        """Return the kinetic energy at an angle, rad, and a speed, rad/s, J."""
+        """Return the kinetic energy, J, at an angle `phi`, rad, and a speed `omega`, rad/s."""
         return 0.5 * self.machine.inertia(self.machine.rows(phi)) * omega * omega
 
     @cached_property

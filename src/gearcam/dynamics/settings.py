@@ -13,6 +13,9 @@ from gearcam.base.rules import Breach
 DYNAMICS: Final = "dynamics of a machine"
 """The checks of machines in motion."""
 
+VIBRATION: Final = "vibration of teeth"
+"""The checks of elastic teeth in motion."""
+
 REGIME, START, TURNS, COAST = "regime", "start", "turns", "coast"
 
 TOOTH_STIFFNESS: Final = Quantity("_n_mm_um", 1.0, "N/(mm um)", least=1e-9)

@@ -25,7 +25,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import Any, Final, NamedTuple
@@ -92,11 +92,12 @@ class StiffPair(ShortRepr):
         Over phi1: i, i', K (N m/rad), K', b (rad), b'; with friction also kappa for Q > 0 and for
         Q < 0.
     inertia : (float, float), kg m2
-        Of all that turns with each shaft.
+        Of all that turns with each shaft; that of the driver does not matter at an even speed.
     damping : float, N m s/rad
         c.
-    motor : callable
-        ``motor(phi1, w1)``: torque on the driver, N m; also of speeds that are not reached.
+    motor : callable or None
+        ``motor(phi1, w1)``: torque on the driver, N m; also of speeds that are not reached. None if
+        the driver turns evenly: then it is what that takes.
     load : callable
         ``load(phi1, w2)``: torque against the driven shaft's motion, N m.
     """
@@ -104,8 +105,13 @@ class StiffPair(ShortRepr):
     table: Tabled
     inertia: tuple[float, float]
     damping: float
-    motor: Callable[[float, float], float]
+    motor: Callable[[float, float], float] | None
     load: Callable[[float, float], float]
+
+    @property
+    def _inertias(self) -> tuple[float, float]:
+        """Both moments of inertia; that of a driver that turns evenly is infinite."""
+        return (math.inf if self.motor is None else self.inertia[0]), self.inertia[1]
 
     @cached_property
     def places(self) -> Array:
@@ -116,8 +122,18 @@ class StiffPair(ShortRepr):
     def frequency(self, phi1: ArrayLike) -> Array:
         """Return the natural frequency, rad/s, at driver angles: ``sqrt(K*(1/J2 + i^2/J1))``."""
         ratio, _, stiffness = self.table.at(phi1)[:3]
-        j1, j2 = self.inertia
+        j1, j2 = self._inertias
         return np.sqrt(stiffness * (1.0 / j2 + ratio**2 / j1))
+
+    def damped(self, ratio: float) -> StiffPair:
+        """Return the pair with a damping, by its `ratio` to the critical one.
+
+        ``c = 2*ratio*sqrt(K/(1/J2 + i^2/J1))``, its mean over a turn.
+        """
+        of_ratio, _, stiffness = self.table.at(self.places)[:3]
+        j1, j2 = self._inertias
+        critical = 2.0 * np.sqrt(stiffness / (1.0 / j2 + of_ratio**2 / j1))
+        return replace(self, damping=ratio * float(critical.mean()))
 
     def rigid_torque(self, phi1: float, w1: float) -> float:
         """Return the torque of the mesh on the driven wheel, N m, if teeth were rigid.
@@ -131,6 +147,8 @@ class StiffPair(ShortRepr):
         j1, j2 = self.inertia
         load = self.load(phi1, ratio * w1)
         inert = j2 * slope * w1 * w1
+        if self.motor is None:
+            return load + inert
         a1 = (self.motor(phi1, w1) - ratio * (load + inert)) / (j1 + j2 * ratio * ratio)
         return load + j2 * ratio * a1 + inert
 
@@ -177,6 +195,8 @@ class StiffPair(ShortRepr):
         ratio, _, stiffness, _, backlash = self.table(phi1)[:5]
         bent = max(abs(lag) - 0.5 * backlash, 0.0)
         j1, j2 = self.inertia
+        if self.motor is None:
+            j1 = 0.0  # its energy does not change
         return 0.5 * (j1 * w1 * w1 + j2 * (ratio * w1 - slip) ** 2 + stiffness * bent * bent)
 
     def _modes(self, speed: float) -> dict[str, Mode]:
@@ -203,7 +223,7 @@ class StiffPair(ShortRepr):
 
     def _mode(self, sign: float, touches: bool, speed: float, switches: Any) -> Mode:
         """Return the equations of a mode; `speed` is that of the start."""
-        table, motor, load, (j1, j2) = self.table, self.motor, self.load, self.inertia
+        table, motor, load, (j1, j2) = self.table, self.motor, self.load, self._inertias
         c, half, even = float(self.damping), 0.5 * sign, 1.0 / speed
         floor = 0.1 * _STALLED * speed  # in trial steps it may be less
 
@@ -215,9 +235,11 @@ class StiffPair(ShortRepr):
             closing = v - moved * w
             q = k * g + c * closing
             lost = (rubs[1 if q < 0.0 else 0] - i) * q if rubs else 0.0
-            m1, w2 = motor(x, w), i * w - v
+            w2 = i * w - v
             m2 = load(x, w2)
-            a1 = (m1 - (i - moved) * q - lost - 0.5 * dk * g * g) / j1
+            resisting = (i - moved) * q + lost + 0.5 * dk * g * g
+            m1 = resisting if motor is None else motor(x, w)
+            a1 = (m1 - resisting) / j1
             slip = i * a1 + di * w * w - (q - m2) / j2
             r = 1.0 / w
             lost += c * closing * closing * r
@@ -227,7 +249,7 @@ class StiffPair(ShortRepr):
             _, w, _, v, _, _, _ = y.tolist()
             w = max(w + speed, floor)
             i, di = table(x)[:2]
-            m1, w2 = motor(x, w), i * w - v
+            m1, w2 = 0.0 if motor is None else motor(x, w), i * w - v
             m2 = load(x, w2)
             a1 = m1 / j1
             r = 1.0 / w
@@ -246,7 +268,7 @@ class StiffPair(ShortRepr):
             i, _, k = table(x)[:3]
             softness = 1.0 / j2 + i * i / j1
             step = _DIFFERENCE * w
-            by_motor = abs(motor(x, w + step) - motor(x, w)) / (step * j1)
+            by_motor = abs(motor(x, w + step) - motor(x, w)) / (step * j1) if motor else 0.0
             by_load = abs(load(x, i * w + step) - load(x, i * w)) / (step * j2)
             return max(math.sqrt(k * softness), c * softness, by_motor, by_load) / w
 
@@ -440,7 +462,8 @@ class StiffRun(ShortRepr):
             return None
         place, pair = self.motion.place, self.pair
         ratio = pair.table(place)[0]
-        return place, ratio * pair.load(place, 0.0) - pair.motor(place, 0.0)
+        driving = pair.motor(place, 0.0) if pair.motor else 0.0
+        return place, ratio * pair.load(place, 0.0) - driving
 
     @cached_property
     def residue(self) -> float:
@@ -500,12 +523,13 @@ class StiffRun(ShortRepr):
         -------
         dict of str to (n,) array
             time (s), w1, w2 (rad/s), lag (rad), slip (rad/s), bent (rad), mesh (N m, on the driven
-            wheel), driver (N m, what it takes on the driver), motor, load (N m).
+            wheel), driver (N m, what it takes on the driver), lost (N m, at the driver), motor,
+            load (N m).
         """
         phi1 = np.asarray(phi1, dtype=float)
         pair = self.pair
         t, w1, lag, slip = self.states(phi1)[:4]
-        ratio, _, stiffness, _, backlash, backlash_slope, *rubs = pair.table.at(phi1)
+        ratio, _, stiffness, by_angle, backlash, backlash_slope, *rubs = pair.table.at(phi1)
         modes = self.motion.modes(phi1)
         sign = np.array([{DRIVE: 1.0, COAST: -1.0}.get(one, 0.0) for one in modes])
         touch = np.array([one in (DRIVE, COAST, MESH) for one in modes])
@@ -514,6 +538,12 @@ class StiffRun(ShortRepr):
         mesh = np.where(touch, stiffness * bent + pair.damping * closing, 0.0)
         kappa = np.where(mesh < 0.0, rubs[1], rubs[0]) if rubs else ratio
         w2, places = ratio * w1 - slip, phi1.tolist()
+        if pair.motor is None:
+            moved = 0.5 * sign * backlash_slope
+            motor = (kappa - moved) * mesh + 0.5 * by_angle * bent**2
+        else:
+            pace = zip(places, w1.tolist(), strict=True)
+            motor = np.array([pair.motor(*one) for one in pace])
         return {
             "time": t,
             "w1": w1,
@@ -523,6 +553,7 @@ class StiffRun(ShortRepr):
             "bent": bent,
             "mesh": mesh,
             "driver": kappa * mesh,
-            "motor": np.array([pair.motor(*one) for one in zip(places, w1.tolist(), strict=True)]),
+            "lost": (kappa - ratio) * mesh + touch * pair.damping * closing**2 / w1,
+            "motor": motor,
             "load": np.array([pair.load(*one) for one in zip(places, w2.tolist(), strict=True)]),
         }

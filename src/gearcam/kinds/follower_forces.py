@@ -205,7 +205,7 @@ def _facts(
         "locked": _locked(statics),
         "lifted": bool(statics.lifted.any()),
         "reversals": int(np.count_nonzero(np.diff(walls))) or None,
-        "spring": _spring(loads) or None,
+        "spring": solved_springs(loads, loads.solved) or None,
         "friction": Fact(", ".join(without), "friction left out", shown=True) if without else None,
     }
     if release is not None and not release[0]:
@@ -301,14 +301,14 @@ def _integral(x: Array, y: Array) -> float:
     return float(np.sum(0.5 * (y[1:] + y[:-1]) * np.abs(np.diff(x))))
 
 
-def _spring(loads: Loads) -> Tree:
-    """Return the solved values of springs as facts."""
+def solved_springs(loads: Loads, solved: Mapping[str, float]) -> Tree:
+    """Return what springs among `loads` are `solved` for, N or N mm and so on, as facts."""
     scale, _, suffix = loads.follower.load_unit
     per = "rad" if loads.follower.angular else "mm"
     names = {"preload": f"preload_{suffix}", "stiffness": f"stiffness_{suffix}_{per}"}
     return {
         names[what]: Fact(scale * value, f"least {what} of the spring", shown=True)
-        for what, value in loads.solved.items()
+        for what, value in solved.items()
     }
 
 

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from gearcam.dynamics.machine import Machine
+    from gearcam.dynamics.motion import MachineMotion
     from gearcam.dynamics.motors import Motor
     from gearcam.dynamics.settings import DynamicsSpec
     from gearcam.mechanics.motor import MotorSpec
@@ -108,7 +109,15 @@ def _problem(motor: MotorSpec, run: str, speed: float | None, key: str) -> Probl
 
 
 def usual_speed(motor: MotorSpec, speed: float | None) -> float:
-    """Return a usual speed of a driver, rad/s: its mean speed if that is given."""
+    """Return a usual speed of a driver, rad/s.
+
+    Parameters
+    ----------
+    motor : MotorSpec
+        Its motor.
+    speed : float or None, rad/s
+        Its mean speed, which is taken if it is given.
+    """
     made = motor_of(motor)
     return speed or (made.scale if made is not None else 0.0) or 1.0
 
@@ -204,9 +213,14 @@ class MachineRun(ShortRepr):
         """The flywheel, given or found, kg m2."""
         return self._found[0]
 
+    @property
+    def motion(self) -> MachineMotion:
+        """The motion that is shown."""
+        return self.rigid
+
     @cached_property
-    def motion(self) -> RigidMotion:
-        """The motion; a regime is that of one turn.
+    def rigid(self) -> RigidMotion:
+        """The motion with rigid members; a regime is that of one turn.
 
         Raises
         ------
@@ -248,7 +262,11 @@ class MachineRun(ShortRepr):
             rtol=max(_FINER * spec.tolerance, _LEAST_TOLERANCE),
         )
         if spec.run == START:
-            return run.from_rest(turns)
+            motion = run.from_rest(turns)
+            if motion.stopped == motion.knots[0]:
+                what = "the motor does not turn the load at rest"
+                raise InfeasibleError(what, where="motor", nearest="a larger torque at rest")
+            return motion
         if spec.run in (TURNS, COAST):
             return run.from_speed(self.speed or 0.0, turns)
         if self.motor.settles:
@@ -304,7 +322,7 @@ class MachineRun(ShortRepr):
             "t_s": motion.time(phi),
             f"{self.symbol}_deg": np.degrees(phi),
             "omega_rad_s": omega,
-            "inertia_kg_m2": np.asarray(motion.machine.inertia(motion.rows(phi))),
+            "inertia_kg_m2": np.asarray(motion.machine.inertia(motion.machine.rows.at(phi))),
             "torque_motor_nm": driving,
             "torque_load_nm": load,
             **({"torque_lost_nm": lost} if np.any(lost) else {}),

@@ -39,7 +39,7 @@ _ROUNDING: Final = 1e-12
 
 
 def demand(design: Any) -> None:
-    """Refuse a design whose masses or springs need a speed that is missing.
+    """Refuse a design whose masses, springs or dampers need a speed that is missing.
 
     Raises
     ------
@@ -57,6 +57,9 @@ def demand(design: Any) -> None:
             what, near = "is missing: a spring is solved for a speed", "a speed above 0"
         problem = Problem(what, file=design.source, key=key, allowed=near)
         raise DesignError([problem])
+    if any(one.drag for one in design.spring):
+        what, near = "is missing: a damper acts by the speed", "a speed above 0"
+        raise DesignError([Problem(what, file=design.source, key=key, allowed=near)])
 
 
 def loads_of(result: LoadedCam) -> Loads:

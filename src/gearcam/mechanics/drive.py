@@ -53,6 +53,24 @@ class DriveSpec(ShortRepr):
 
 
 @dataclass(frozen=True, kw_only=True)
+class CamDriveSpec(DriveSpec):
+    """The speed of a cam that turns, and whether its lift is corrected for it.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.CamDriveSpec(speed=30.0, polydyne=True).named
+    '286.479 rpm'
+    """
+
+    polydyne: bool = param(
+        default=False,
+        doc="whether the cam's lift is corrected so that the mass of an elastic follower makes the "
+        "motion of the design at this speed",
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
 class SlideDriveSpec(DriveSpec):
     """The speed of a driver that slides, mm/s.
 

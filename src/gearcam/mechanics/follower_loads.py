@@ -27,7 +27,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple, Protocol
 
@@ -56,6 +56,9 @@ _AT_REST = 1e-12
 
 _INSIDE = 1e-3
 """Way from an end of a piece to its middle at which it has its direction of motion."""
+
+_TRIED = 100
+"""Speeds at which a damped follower is looked at, a fourteenth apart."""
 
 _ROUNDING = 1e-12
 """Load over that at rest that is rounding."""
@@ -174,9 +177,12 @@ class Loads(ShortRepr):
     @cached_property
     def inertia(self) -> float:
         """Mass, kg, or moment of inertia, kg m2, times the unit of output over that inside."""
-        if self.follower.angular:
-            return 1e3 * sum(one.inertia or 0.0 for one in self.masses)
-        return MM * sum(one.mass or 0.0 for one in self.masses)
+        return sum(one.acting(oscillating=self.follower.angular) for one in self.masses)
+
+    @cached_property
+    def damper(self) -> float:
+        """Damping of all springs, N s/mm or N mm s/rad."""
+        return sum(one.drag for one in self.springs)
 
     def _weights(self, s: Array) -> tuple[Array, Plane]:
         """Return weight against a rise, and on the support."""
@@ -208,8 +214,8 @@ class Loads(ShortRepr):
             total += MM * (one.mass or 0.0) * self.support.hurrying(centre, ds, d2s)
         return total
 
-    def _pressing(self, motion: DrivenMotion) -> Plane:
-        """Return the force of weight and inertia on the support, N."""
+    def pressing(self, motion: DrivenMotion) -> Plane:
+        """Return the force of weight and inertia on the support, N, in a `motion`."""
         weight = self._weights(motion.s)[1]
         return weight - (self.speed or 0.0) ** 2 * self._hurry(motion)
 
@@ -231,7 +237,8 @@ class Loads(ShortRepr):
             rate, force = one.rate, one.force
             total = total + (0.0 if rate == "solve" else rate) * s
             total = total + (0.0 if force == "solve" else force)
-        drag = self.support.drag(self._pressing(motion), self.friction)
+        drag = self.support.drag(self.pressing(motion), self.friction)
+        total = total + self.damper * (self.speed or 0.0) * motion.ds
         return total + self.inertia * (self.speed or 0.0) ** 2 * d2s + self._sense(motion) * drag
 
     @cached_property
@@ -284,7 +291,42 @@ class Loads(ShortRepr):
             return None
 
         most, where, way = self._largest(self._looseness)
+        if self.damper and math.isfinite(most):
+            return self._damped_release(1.0 / math.sqrt(most) if most > 0.0 else 0.0)
         return (1.0 / math.sqrt(most), where, way) if most > 0.0 else None
+
+    def _damped_release(self, undamped: float) -> tuple[float, float, float] | None:
+        """Return the release with dampers, from the speed without them; 0: none.
+
+        They also press on a rise, and lift on a return, by the speed itself, so that the lowest
+        speed is looked for among many below ten times that without them.
+        """
+        springs = [one.with_solved(self.solved) for one in self.springs]
+
+        def lack(speed: float) -> tuple[float, float, float]:
+            other = replace(self, speed=speed, springs=springs)
+
+            def missing(motion: DrivenMotion) -> Array:
+                load = other.total_load(motion)
+                return -other.side * load.holding(other.support, other.friction)
+
+            return other._largest(missing)
+
+        _, acceleration, _ = self.program.peaks
+        still = -lack(0.0)[0]
+        falls = self.damper * self.program.peaks[0] or math.inf
+        top = 10.0 * max(undamped, still / falls, math.sqrt(still / (self.inertia * acceleration)))
+        low = 0.0
+        for high in np.geomspace(1e-3 * top, top, _TRIED).tolist():
+            if lack(high)[0] > 0.0:
+                break
+            low = high
+        else:
+            return None
+        while high - low > _ROUNDING * high:
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if lack(middle)[0] > 0.0 else (middle, high)
+        return (high, *lack(high)[1:])
 
     def _looseness(self, motion: DrivenMotion) -> Array:
         """Return one over the squares of the speeds at which the follower lifts off.
@@ -328,8 +370,10 @@ class Loads(ShortRepr):
         """Return what the cam has to move."""
         square = (self.speed or 0.0) ** 2
         return TotalLoad(
-            against=self.held_still(motion) + self.inertia * square * motion.d2s,
-            resultant=self._pressing(motion),
+            against=self.held_still(motion)
+            + self.damper * (self.speed or 0.0) * motion.ds
+            + self.inertia * square * motion.d2s,
+            resultant=self.pressing(motion),
             sense=self._sense(motion),
         )
 

@@ -86,3 +86,46 @@ def half_width(force: Array, curvature: Array, material: MaterialSpec) -> Array:
     """Return half the width of the contact, mm (see `line_pressure`)."""
     curvature = np.where(curvature > 0.0, curvature, np.nan)
     return np.sqrt(4.0 * force / (np.pi * curvature * material.contact_modulus))
+
+
+def line_stiffness(
+    force: float, curvature: float, radii: tuple[float, float], width: float, material: MaterialSpec
+) -> float:
+    """Return the stiffness of a line contact of two solid cylinders about a force, N/mm.
+
+    The axes approach by ``sum w/(pi*E_i)*(2*ln(4*R_i/a) - 1)`` with ``E_i = E/(1 - nu^2)``, w the
+    force per width and ``a^2 = 4*w/(pi*k*E)`` the square of the half width; its derivative by w is
+    ``sum 2/(pi*E_i)*(ln(4*R_i/a) - 1)``, for one material ``(ln(16*R1*R2/a^2) - 2)/(pi*E)``. It
+    holds where a is small beside the radii, and falls slowly with them, so that it may be used
+    for a cam of about that radius.
+
+    Parameters
+    ----------
+    force : float, N
+        Above 0.
+    curvature : float, 1/mm
+        Sum of both curvatures at the contact.
+    radii : (float, float), mm
+        Of both bodies: how deep they are behind the contact.
+    width : float, mm
+        Length of the line of contact.
+    material : MaterialSpec
+        Of both.
+
+    Returns
+    -------
+    float, N/mm
+
+    Notes
+    -----
+    Johnson, Contact Mechanics, 1985, section 5.6.
+    """
+    square = 4.0 * force / width / (np.pi * curvature * material.contact_modulus)
+    soft = (
+        2.0
+        * (1.0 - poisson**2)
+        / (np.pi * young)
+        * (math.log(4.0 * radius / math.sqrt(square)) - 1.0)
+        for radius, (young, poisson) in zip(radii, material.elasticity, strict=True)
+    )
+    return width / sum(soft)

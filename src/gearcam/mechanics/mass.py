@@ -12,7 +12,7 @@ from gearcam.base.rules import Breach, needs
 
 @dataclass(frozen=True, kw_only=True)
 class MassSpec(ShortRepr):
-    """The mass of the follower with all that moves with it.
+    """The mass of the follower, or of what moves with it behind an elastic train.
 
     Examples
     --------
@@ -21,7 +21,12 @@ class MassSpec(ShortRepr):
     MassSpec(mass=0.35)
     """
 
-    of: str = param(TEXT, default="follower", choices=("follower",), doc="member that has the mass")
+    of: str = param(
+        TEXT,
+        default="follower",
+        choices=("follower", "train"),
+        doc="member that has the mass; train: behind the elastic train of `gearcam dynamics`",
+    )
     mass: float | None = param(MASS, default=None, gt=0, le=1e6, example=0.35, doc="mass")
     inertia: float | None = param(
         INERTIA,
@@ -41,6 +46,10 @@ class MassSpec(ShortRepr):
     )
 
     rules = (needs("center", "mass"),)
+
+    def acting(self, *, oscillating: bool) -> float:
+        """Return its mass, N s2/mm, or of what swings (`oscillating`) its inertia, N mm s2."""
+        return 1e3 * (self.inertia or 0.0) if oscillating else 1e-3 * (self.mass or 0.0)
 
     def problems(self) -> Iterator[Breach]:
         """Yield contradictions: field, index, message, what is allowed."""

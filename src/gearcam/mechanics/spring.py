@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Final
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.quantities import (
+    DAMPING,
+    DAMPING_PER_RAD,
     FORCE,
     STIFFNESS,
     STIFFNESS_PER_RAD,
@@ -17,13 +20,18 @@ from gearcam.base.quantities import (
 )
 from gearcam.base.rules import Breach
 
+_STRAIGHT: Final = ("stiffness", "preload", "damping")
+_SWINGING: Final = ("torsion", "moment", "torsion_damping")
+"""Fields of a straight spring, and the same of one about a pivot."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class SpringSpec(ShortRepr):
     """A spring between frame and follower; of an oscillating follower about its pivot.
 
-    Its force is the preload, at zero lift, and the stiffness times the lift. One of both may be
-    ``"solve"``: the least that keeps the follower on the cam at the speed of the drive.
+    Its force is the preload, at zero lift, and the stiffness times the lift; with a damper beside
+    it also the damping times the velocity, which opposes the motion. One of preload and stiffness
+    may be ``"solve"``: the least that keeps the follower on the cam at the speed of the drive.
 
     Examples
     --------
@@ -51,15 +59,31 @@ class SpringSpec(ShortRepr):
     moment: float | Solve | None = param(
         TORQUE, default=None, ge=0, le=1e9, word="preload", example=4, doc="its torque at zero lift"
     )
+    damping: float | None = param(
+        DAMPING, default=None, ge=0, le=1e9, example=0.05, doc="force of its damper over velocity"
+    )
+    torsion_damping: float | None = param(
+        DAMPING_PER_RAD,
+        default=None,
+        ge=0,
+        le=1e9,
+        word="damping",
+        example=0.01,
+        doc="the same of a spring about the pivot",
+    )
 
     def problems(self) -> Iterator[Breach]:
         """Yield contradictions: field, index, message, what is allowed."""
-        straight = self.stiffness is not None or self.preload is not None
-        swinging = self.torsion is not None or self.moment is not None
+        straight = [one for one in _STRAIGHT if getattr(self, one) is not None]
+        swinging = [one for one in _SWINGING if getattr(self, one) is not None]
         if straight and swinging:
-            what = "does not go with stiffness_n_mm or preload_n"
-            name = "moment" if self.torsion is None else "torsion"
-            yield name, None, what, "either the keys of a straight spring, or of one about a pivot"
+            what = "does not go with stiffness_n_mm, preload_n or damping_n_s_mm"
+            yield (
+                swinging[0],
+                None,
+                what,
+                "either the keys of a straight spring, or of one about a pivot",
+            )
         elif not straight and not swinging:
             yield "stiffness", None, "is missing", "a stiffness, a preload, or both"
         if [self.rate, self.force].count("solve") > 1:
@@ -68,9 +92,9 @@ class SpringSpec(ShortRepr):
 
     def allowed_on(self, *, oscillating: bool) -> Iterator[Breach]:
         """Yield keys that do not suit the follower."""
-        wrong, right = ("stiffness", "preload"), "stiffness_nm_rad and preload_nm"
+        wrong, right = _STRAIGHT, "stiffness_nm_rad, preload_nm and damping_nm_s_rad"
         if not oscillating:
-            wrong, right = ("torsion", "moment"), "stiffness_n_mm and preload_n"
+            wrong, right = _SWINGING, "stiffness_n_mm, preload_n and damping_n_s_mm"
         for name in wrong:
             if getattr(self, name) is not None:
                 what = "an oscillating" if oscillating else "a translating"
@@ -90,3 +114,15 @@ class SpringSpec(ShortRepr):
     def force(self) -> float | Solve:
         """Preload, N or N mm, or "solve"."""
         return (self.moment if self.preload is None else self.preload) or 0.0
+
+    @property
+    def drag(self) -> float:
+        """Damping, N s/mm or N mm s/rad."""
+        return (self.torsion_damping if self.damping is None else self.damping) or 0.0
+
+    def with_solved(self, solved: Mapping[str, float]) -> SpringSpec:
+        """Return it with what is solved for: ``preload`` or ``stiffness``, N or N mm, and so on."""
+        straight = self.stiffness is not None or self.preload is not None
+        names = _STRAIGHT if straight else _SWINGING
+        found = {names[what == "preload"]: value for what, value in solved.items()}
+        return replace(self, **{k: v for k, v in found.items() if getattr(self, k) == "solve"})

@@ -31,7 +31,7 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.mechanics.follower_loads import DrivenMotion, Loads
 from gearcam.mechanics.friction import FrictionSpec
-from gearcam.mechanics.supports import Push, Support
+from gearcam.mechanics.supports import Push, Support, TotalLoad
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
 _ROUNDING = 1e-12
@@ -194,6 +194,7 @@ def solve(
     loads: Loads,
     motion: DrivenMotion,
     share: Callable[[float], float],
+    total_load: TotalLoad | None = None,
 ) -> Statics:
     """Return the forces of a cam on its follower.
 
@@ -207,12 +208,15 @@ def solve(
         The motion of the follower, at n positions of the driver; torque is by the driver's way.
     share : callable
         ``share(radius)`` returns tangential over normal force of an end of that radius, mm.
+    total_load : TotalLoad, optional
+        What the cam moves, if it is not that of a rigid follower.
 
     Returns
     -------
     Statics
     """
-    support, friction, total_load = loads.support, loads.friction, loads.total_load(motion)
+    support, friction = loads.support, loads.friction
+    total_load = loads.total_load(motion) if total_load is None else total_load
     ds, count = motion.ds, motion.x.shape
     force, reserve = np.full(count, np.nan), np.full(count, np.nan)
     carrying, locked = np.full(count, -1), np.zeros(count, dtype=bool)

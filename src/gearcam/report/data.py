@@ -69,9 +69,9 @@ def scene_data(scene: Scene) -> dict[str, Any]:
         ``x`` and ``y`` in the body's frame); ``coloured``, each with
         ``body``, ``points`` and ``values`` by label; ``scales`` by label, each with
         ``least``, ``largest``, and where that is: ``place`` of the driver, ``body``, ``x`` and
-        ``y`` on it; ``times``, seconds from the first place, or null; ``solids`` by name, those that do not move as the
-        body of their name: each with ``axis``, ``turn``, ``x``, ``y`` and ``z``; ``eye`` and
-        ``up``, directions of the first view of solids.
+        ``y`` on it; ``times``, seconds from the first place, or null; ``solids`` by name, those
+        that do not move as the body of their name: each with ``axis``, ``turn``, ``x``, ``y`` and
+        ``z``; ``eye`` and ``up``, directions of the first view of solids.
     """
     names = dict.fromkeys(name for one in scene.coloured for name in one.values)
     sizes = [np.abs(one.force[np.isfinite(one.force)]).max(initial=0.0) for one in scene.forces]

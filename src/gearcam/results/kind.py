@@ -75,6 +75,8 @@ class Study:
         ``demand(design)`` refuses settings that the keys alone allow, before anything is built.
     elsewhere : mapping of str to str
         Further options, and the dotted keys of numbers of other tables that they override.
+    alike : bool
+        Whether its settings are the same in all kinds that have it.
     repeats : tuple of str
         Codes of findings of the design that the study gives anew.
     many : bool
@@ -95,6 +97,7 @@ class Study:
     metavar: str = ""
     demand: Callable[[Design], None] = _anything
     elsewhere: Mapping[str, str] = field(default_factory=dict)
+    alike: bool = True
     repeats: tuple[str, ...] = ()
     many: bool = True
     settings: type | None = None

@@ -395,3 +395,12 @@ def test_a_reader_that_leaves_early_is_no_fault(tmp_path: Path) -> None:
     process.stderr.close()
     assert process.wait() == 0
     assert complaint == b""
+
+
+def test_a_study_of_several_kinds_has_the_options_of_each(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    main(["dynamics", "--help"])
+    rows = capsys.readouterr().out.splitlines()
+    for option in ("--train-stiffness", "--damping-ratio", "--inertia", "--run"):
+        assert len([row for row in rows if row.startswith(f"  {option} ")]) == 1

@@ -175,6 +175,7 @@ STUDIES: dict[tuple[str, str], tuple[str, dict[str, Any]]] = {
     ("gear-pair", "dynamics"): ("loaded_nail_machine", {"dynamics.inertia_kg_m2": 0.2}),
     ("gear-pair", "errors"): ("ellipse", {"errors.steps": 24}),
     ("cam", "forces"): ("valve_lever", {"forces.steps": 24}),
+    ("cam", "dynamics"): ("elastic_valve_train", {"drive.speed_rpm": 1200, "dynamics.turns": 2}),
     ("cam", "follow"): ("tappet", {"follow.file": "profile.csv"}),
     ("cam", "precision"): ("plate_cam_offset_roller", {}),
     ("spatial-cam", "developed"): ("cylinder_cam", {"developed.steps": 24}),

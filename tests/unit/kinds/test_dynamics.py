@@ -142,8 +142,19 @@ def test_a_turn_that_repeats_or_a_whole_travel_has_a_pace():
     run = {"run": "start", "inertia_kg_m2": [0.01, 0.01]}
     assert study("log_spiral", {"motor": motor, "dynamics": run}).pace is not None
     assert study("ellipse", {"motor": motor, "dynamics": run}).pace is None
-    against = {"load": [{"on": "wheel2", "torque_nm": 100}], "output.files": ["csv"]}
+    against = {"load": [{"on": "wheel2", "formula": "20*phi1"}]}
     assert study("log_spiral", {"motor": motor, "dynamics": run, **against}).pace is None
+
+
+def test_a_motor_that_does_not_turn_the_load_at_rest_is_refused():
+    motor = {"type": "linear", "start_torque_nm": 3, "idle_rpm": 60}
+    changes = {
+        "motor": motor,
+        "dynamics": {"run": "start", "inertia_kg_m2": [0.01, 0.01]},
+        "load": [{"on": "wheel2", "torque_nm": 100}],
+    }
+    with pytest.raises(InfeasibleError, match="does not turn the load at rest"):
+        study("log_spiral", changes)
 
 
 PAIR = {"dynamics.inertia_kg_m2": 0.2}

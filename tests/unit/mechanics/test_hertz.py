@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
-from gearcam.mechanics.hertz import first_yield, yield_pressure
+from gearcam.mechanics.hertz import first_yield, line_stiffness, yield_pressure
 from gearcam.mechanics.material import MaterialSpec
 
 
@@ -44,3 +44,28 @@ def test_the_weaker_of_both_parts_yields_first() -> None:
     soft = MaterialSpec(name=("steel", "pom"), yield_strength=(400.0, 65.0))
     assert yield_pressure(soft) == pytest.approx(65.0 * first_yield(0.37))
     assert yield_pressure(MaterialSpec()) == np.inf
+
+
+def test_the_stiffness_is_the_slope_of_the_approach() -> None:
+    """Of unlike materials by differences, of one in the closed form of the field."""
+    radii, width, curvature = (30.0, 8.0), 12.0, 1.0 / 30.0 + 1.0 / 8.0
+    material = MaterialSpec(name=("cast-iron", "steel"))
+
+    def approach(force: float) -> float:
+        load = force / width
+        half = np.sqrt(4.0 * load / (np.pi * curvature * material.contact_modulus))
+        return sum(
+            load * (1.0 - nu**2) / (np.pi * young) * (2.0 * np.log(4.0 * radius / half) - 1.0)
+            for radius, (young, nu) in zip(radii, material.elasticity, strict=True)
+        )
+
+    slope = (approach(501.0) - approach(499.0)) / 2.0
+    found = line_stiffness(500.0, curvature, radii, width, material)
+    assert found == pytest.approx(1.0 / slope, rel=1e-6)
+
+    steel = MaterialSpec()
+    modulus = steel.contact_modulus
+    square = 4.0 * 500.0 / width / (np.pi * curvature * modulus)
+    soft = (np.log(16.0 * 30.0 * 8.0 / square) - 2.0) / (np.pi * width * modulus)
+    found = line_stiffness(500.0, curvature, radii, width, steel)
+    assert found == pytest.approx(1.0 / soft, rel=1e-12)

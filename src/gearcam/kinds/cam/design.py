@@ -26,8 +26,11 @@ from gearcam.designs.design import Design, document_of
 from gearcam.designs.faults import Fault, show
 from gearcam.designs.kind import Examined
 from gearcam.designs.table import table_of
+from gearcam.designs.validate import placed_faults
+from gearcam.dynamics.follower_checks import MOVING
 from gearcam.kinds.cam.forms.base import FORMS, VARIANTS
 from gearcam.kinds.cam.motion import MOTION, circumstances
+from gearcam.kinds.cam.polydyne import polydyne_faults
 from gearcam.kinds.cam.tables import (
     GOALS,
     NAME,
@@ -35,6 +38,7 @@ from gearcam.kinds.cam.tables import (
     BoundsSpec,
     CamBlank,
     CamOutputSpec,
+    FollowerDynamicsSpec,
     FollowSpec,
     PrecisionSpec,
 )
@@ -68,7 +72,7 @@ class CamDesign(Design):
         The follower and its guide.
     cam : CamSpec
         Form, size, direction of turning.
-    drive : DriveSpec or SlideDriveSpec
+    drive : CamDriveSpec or SlideDriveSpec
         Speed of the cam.
     load : sequence of LoadSpec or SlideLoadSpec
         What the follower works against.
@@ -88,6 +92,8 @@ class CamDesign(Design):
         Materials of cam and follower.
     forces : ForcesSpec
         Settings of the study of forces.
+    dynamics : FollowerDynamicsSpec
+        Elasticity of the follower, for the study of its dynamics.
     follow : FollowSpec
         A given profile, for the study of the motion that it makes.
     precision : PrecisionSpec
@@ -123,6 +129,7 @@ class CamDesign(Design):
     friction: FrictionSpec = field(default_factory=FrictionSpec)
     material: MaterialSpec = field(default_factory=MaterialSpec)
     forces: ForcesSpec = field(default_factory=ForcesSpec)
+    dynamics: FollowerDynamicsSpec = field(default_factory=FollowerDynamicsSpec)
     follow: FollowSpec = field(default_factory=FollowSpec)
     precision: PrecisionSpec = field(default_factory=PrecisionSpec)
     accuracy: AccuracySpec = field(default_factory=AccuracySpec)
@@ -186,7 +193,13 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     yield from _follow_faults(output, document.get("follow"))
     yield from _tool_faults(output, follower)
     if "follower" in found.parts:
-        yield from load_faults(found, document, oscillating=found.parts["follower"].oscillating)
+        held = found.parts["follower"]
+        yield from load_faults(found, document, oscillating=held.oscillating)
+        if "dynamics" in found.parts and "dynamics" in document:
+            breaches = found.parts["dynamics"].allowed_on(oscillating=held.oscillating)
+            table = table_of("dynamics", FollowerDynamicsSpec)
+            yield from placed_faults(breaches, table, document["dynamics"], ("dynamics",))
+        yield from polydyne_faults(found, document)
     asked = unknowns(document)
     yield from _unsolvable(document, asked)
     if {"cam", "follower"} <= found.parts.keys():
@@ -296,11 +309,12 @@ KIND: Final = Kind(
     problems=problems,
     check_modules=(
         "gearcam.cams.checks",
+        "gearcam.dynamics.follower_checks",
         "gearcam.laws.row_checks",
         "gearcam.mechanics.force_checks",
         "gearcam.parts.checks",
     ),
-    check_groups=(CAM, "rows of tables", PARTS, FOLLOWED, FITTED, FORCES, PRECISION),
+    check_groups=(CAM, "rows of tables", PARTS, FOLLOWED, FITTED, FORCES, MOVING, PRECISION),
     example={
         "motion": [
             {"type": "rise", "angle_deg": 120, "law": "cycloidal", "lift_mm": 10},

@@ -17,6 +17,7 @@ from gearcam.kinds.cam.tables import (
     BoundsSpec,
     CamBlank,
     CamOutputSpec,
+    FollowerDynamicsSpec,
     FollowSpec,
     PrecisionSpec,
 )
@@ -24,7 +25,7 @@ from gearcam.kinds.shared import AccuracySpec, ForcesSpec, GoalSpec
 from gearcam.laws.motion_formula import MotionFormula
 from gearcam.laws.motion_table import MotionTable
 from gearcam.laws.phases_of_lift import DwellPhase, ReturnPhase, RisePhase, SegmentPhase
-from gearcam.mechanics.drive import DriveSpec, SlideDriveSpec
+from gearcam.mechanics.drive import CamDriveSpec, SlideDriveSpec
 from gearcam.mechanics.friction import FrictionSpec
 from gearcam.mechanics.gravity import GravitySpec
 from gearcam.mechanics.load import LoadSpec, SlideLoadSpec
@@ -34,13 +35,13 @@ from gearcam.mechanics.spring import SpringSpec
 from gearcam.parts.blank import WheelBlank
 
 __all__ = [
-    "AccuracySpec", "BoundsSpec", "CamBlank", "CamDesign", "CamOutputSpec", "CamResult", "CamSpec",
-    "ConjugateFollower", "ConjugateSpec", "DriveSpec", "DwellPhase", "FollowSpec", "FollowerSpec",
-    "ForcesSpec", "FrictionSpec", "GoalSpec", "GravitySpec", "GrooveBlank", "GrooveFollower",
-    "GrooveSpec", "LoadSpec", "MassSpec", "MaterialSpec", "MotionFormula", "MotionTable",
-    "PlateBlank", "PlateFollower", "PlateOutput", "PlateSpec", "PrecisionSpec", "ReturnPhase",
-    "RisePhase", "SegmentPhase", "SlideDriveSpec", "SlideLoadSpec", "SpringSpec", "WheelBlank",
-    "YokeFollower", "YokeSpec",
+    "AccuracySpec", "BoundsSpec", "CamBlank", "CamDesign", "CamDriveSpec", "CamOutputSpec",
+    "CamResult", "CamSpec", "ConjugateFollower", "ConjugateSpec", "DwellPhase", "FollowSpec",
+    "FollowerDynamicsSpec", "FollowerSpec", "ForcesSpec", "FrictionSpec", "GoalSpec",
+    "GravitySpec", "GrooveBlank", "GrooveFollower", "GrooveSpec", "LoadSpec", "MassSpec",
+    "MaterialSpec", "MotionFormula", "MotionTable", "PlateBlank", "PlateFollower",
+    "PlateOutput", "PlateSpec", "PrecisionSpec", "ReturnPhase", "RisePhase", "SegmentPhase",
+    "SlideDriveSpec", "SlideLoadSpec", "SpringSpec", "WheelBlank", "YokeFollower", "YokeSpec",
 ]  # fmt: skip
 
 PUBLIC = {name: globals()[name] for name in __all__}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.quantities import (
@@ -15,6 +15,9 @@ from gearcam.base.quantities import (
     LEAST_ALLOWANCE,
     LENGTH,
     LONGEST,
+    NUMBER,
+    STIFFNESS,
+    STIFFNESS_PER_RAD,
     TEXT,
     Param,
     Quantity,
@@ -27,6 +30,7 @@ from gearcam.base.quantities import (
 from gearcam.base.registry import deferred
 from gearcam.base.rules import Breach, needs
 from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, pose_param, studies_param
+from gearcam.dynamics.integrate import METHODS
 from gearcam.kinds.shared import ACCURACY, forces_study
 from gearcam.parts.blank import OPENING_RULES, WheelBlank, least_metal, widening_rules
 from gearcam.results.kind import Study, studies_of
@@ -52,6 +56,18 @@ STUDIES: Final = studies_of(
         many=False,
     ),
     forces_study(f"{_HERE}.forces:study_forces"),
+    Study(
+        name="dynamics",
+        key="dynamics",
+        doc="Compute the motion of an elastic follower, with flights; write DIR/NAME/dynamics.csv.",
+        done="computed",
+        table="dynamics",
+        options={"stiffness_n_mm": "train-stiffness", "stiffness_nm_rad": "swing-stiffness"},
+        alike=False,
+        elsewhere={"speed": "drive.speed_rpm"},
+        compute=deferred(f"{_HERE}.dynamics:study_dynamics"),
+        demand=deferred(f"{_HERE}.moving:demand"),
+    ),
     Study(
         name="precision",
         key="precision",
@@ -145,6 +161,105 @@ class FollowSpec(ShortRepr):
 def _tolerance(quantity: Quantity = LENGTH, *, doc: str) -> Any:
     """Return a tolerance to either side; 0: the size is exact."""
     return param(quantity, default=0.0, ge=0, le=100 if quantity is LENGTH else 90, doc=doc)
+
+
+Hertz = Literal["hertz"]
+
+_DAMPED: Final = 0.06
+"""Damping ratio of springs of metal with joints: 0.03 to 0.1, as a rule."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class FollowerDynamicsSpec(ShortRepr):
+    """The elasticity of a follower, and how its motion is integrated.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.FollowerDynamicsSpec(stiffness=2000.0, turns=5)
+    FollowerDynamicsSpec(stiffness=2000, turns=5)
+    """
+
+    stiffness: float | None = param(
+        STIFFNESS,
+        default=None,
+        gt=0,
+        le=1e9,
+        example=2000,
+        doc="stiffness of the train between cam and mass, along the lift; rigid if left out",
+    )
+    torsion: float | None = param(
+        STIFFNESS_PER_RAD,
+        default=None,
+        gt=0,
+        le=1e9,
+        word="stiffness",
+        example=5000,
+        doc="the same of an oscillating follower, about its pivot",
+    )
+    contact_stiffness: float | Hertz | None = param(
+        STIFFNESS,
+        default=None,
+        gt=0,
+        le=1e9,
+        example=20000,
+        doc="stiffness of the contact along its normal; hertz: of a line contact under the mean "
+        "force; rigid if left out",
+    )
+    damping_ratio: tuple[float, float] = param(
+        NUMBER,
+        default=(_DAMPED, _DAMPED),
+        ge=0.002,
+        le=0.9,
+        both=True,
+        doc="damping of train and contact, over that at which the mass behind it alone would not "
+        "swing",
+    )
+    turns: int = param(
+        COUNT,
+        default=20,
+        ge=1,
+        le=10000,
+        doc="largest number of turns until one repeats the one before",
+    )
+    method: str = param(
+        TEXT,
+        default="auto",
+        choices=METHODS,
+        doc="integrator; auto: dop853 up to 100 natural periods in a turn, else radau",
+    )
+    tolerance: float = param(
+        NUMBER, default=1e-6, ge=1e-12, le=1e-3, doc="relative tolerance of a step"
+    )
+
+    rules = tuple(
+        needs(name, "stiffness", "torsion", "contact_stiffness", one=True)
+        for name in ("damping_ratio", "turns", "method", "tolerance")
+    )
+
+    @property
+    def train(self) -> float | None:
+        """Stiffness of the train, N/mm or N mm/rad; None if it is rigid."""
+        return self.torsion if self.stiffness is None else self.stiffness
+
+    @property
+    def elastic(self) -> bool:
+        """Whether anything is elastic."""
+        return self.train is not None or self.contact_stiffness is not None
+
+    def allowed_on(self, *, oscillating: bool) -> Iterator[Breach]:
+        """Yield keys that do not suit the follower."""
+        wrong, right = "torsion", "stiffness_n_mm"
+        if oscillating:
+            wrong, right = "stiffness", "stiffness_nm_rad"
+        if getattr(self, wrong) is not None:
+            what = "an oscillating" if oscillating else "a translating"
+            yield wrong, None, f"does not suit {what} follower", right
+
+    @staticmethod
+    def train_key(*, oscillating: bool) -> str:
+        """Return the key of the stiffness of the train."""
+        return "dynamics.stiffness_nm_rad" if oscillating else "dynamics.stiffness_n_mm"
 
 
 def _wanted(quantity: Quantity, *, word: str = "", example: float, doc: str) -> Any:

@@ -16,7 +16,7 @@ from gearcam.designs.kind import Examined
 from gearcam.designs.nodes import Choice
 from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, pose_param, studies_param
 from gearcam.designs.table import table_of
-from gearcam.dynamics.settings import DYNAMICS, PairDynamicsSpec
+from gearcam.dynamics.settings import DYNAMICS, VIBRATION, PairDynamicsSpec
 from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.gears.subject import KIND as TEETH
 from gearcam.kinds.gear_pair.load_settings import StressSpec
@@ -94,6 +94,7 @@ STUDIES: Final = studies_of(
         table="dynamics",
         compute=deferred(f"{_HERE}.dynamics:study_dynamics"),
         demand=deferred(f"{_HERE}.dynamics:demand"),
+        alike=False,
         elsewhere={"speed": "drive.speed_rpm"},
     ),
     ACCURACY,
@@ -378,6 +379,7 @@ KIND: Final = Kind(
         DYNAMIC_FORCES,
         STRESS,
         DYNAMICS,
+        VIBRATION,
         PARTS,
     ),
     example={

@@ -15,7 +15,10 @@ from gearcam.meshing.edges import first_touch
 from gearcam.results.study import silent
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from gearcam.kinds.gear_pair.result import GearPairResult
+    from gearcam.mechanics.wheel_load import WheelLoadSpec
     from gearcam.meshing.contact import Contacts
     from gearcam.numeric.arrays import Array, Ints
     from gearcam.results.study import Progress
@@ -166,6 +169,8 @@ class ElasticPair:
         The pair.
     progress : Progress
         Told of the wheels done.
+    loads : sequence of WheelLoadSpec, optional
+        In place of those of its design.
 
     Raises
     ------
@@ -173,11 +178,17 @@ class ElasticPair:
         If a load does not fit, or the wheels cannot be held so.
     """
 
-    def __init__(self, result: GearPairResult, progress: Progress = silent) -> None:
+    def __init__(
+        self,
+        result: GearPairResult,
+        progress: Progress = silent,
+        loads: Sequence[WheelLoadSpec] | None = None,
+    ) -> None:
         from gearcam.stress.elastic import PlaneModuli
         from gearcam.stress.region import region_of, tooth_spans
 
-        self.result, self.under, self._progress = result, PairUnderLoad(result), progress
+        self.result, self.under = result, PairUnderLoad(result, loads)
+        self._progress = progress
         self.spec = result.design.stress
         held = self.spec.held_diameter or (None, None)
         self.regions: tuple[Region, ...] = tuple(

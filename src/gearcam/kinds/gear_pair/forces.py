@@ -27,7 +27,7 @@ from gearcam.pictures.charts import Chart, Limit, Line, knot_marks
 from gearcam.results.study import StudyResult
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from gearcam.gears.contact import FlankPairs
     from gearcam.kinds.gear_pair.result import GearPairResult
@@ -82,16 +82,20 @@ class PairUnderLoad:
     ----------
     result : GearPairResult
         The pair.
+    loads : sequence of WheelLoadSpec, optional
+        In place of those of its design.
 
     Raises
     ------
     DesignError
-        If nothing acts on it, or a load does not fit its travel.
+        If a load does not fit its travel.
     """
 
-    def __init__(self, result: GearPairResult) -> None:
+    def __init__(
+        self, result: GearPairResult, loads: Sequence[WheelLoadSpec] | None = None
+    ) -> None:
         self.result = result
-        self.loads: tuple[WheelLoadSpec, ...] = result.design.load
+        self.loads = tuple(result.design.load if loads is None else loads)
         self.turns = bool(result.pair.closed)
         self.travel = _TURN if self.turns else float(result.turn(1)[-1])
         for number, load in enumerate(self.loads):
@@ -402,7 +406,24 @@ def _facts(under: PairUnderLoad, loaded: LoadedPair) -> Tree:
 def extreme_fact(
     loaded: LoadedPair, values: Array, label: str, unit: str, rows: Ints | None = None
 ) -> Fact | None:
-    """Return the range of some values, with the place of the largest, as a fact."""
+    """Return the range of some values, with the place of the largest, as a fact.
+
+    Parameters
+    ----------
+    loaded : LoadedPair
+        The forces.
+    values : (n,) or (k,) array
+        Of phases, or of contacts.
+    label, unit : str
+        Of the fact.
+    rows : (k,) int array, optional
+        Phases of the contacts.
+
+    Returns
+    -------
+    Fact or None
+        None if no value is known.
+    """
     if np.isnan(values).all():
         return None
     ends = extent(float(np.nanmin(values)), float(np.nanmax(values)))

@@ -97,6 +97,7 @@ STUDIES: Final = studies_of(
         table="dynamics",
         compute=deferred(f"{_HERE}.dynamics:study_dynamics"),
         demand=deferred(f"{_HERE}.dynamics:demand"),
+        alike=False,
         elsewhere={"speed": "drive[0].speed_rpm"},
         repeats=("loads-unused",),
     ),
@@ -333,6 +334,10 @@ class MechanismDesign(Design):
         What is balanced in two planes.
     torque : TorqueSpec
         Settings of the study of the driver's moment.
+    motor : MotorSpec
+        What turns the driver.
+    dynamics : DynamicsSpec
+        Settings of the study of dynamics.
     output : MechanismOutput
         Files and what is in them.
     accuracy : AccuracySpec

@@ -196,7 +196,7 @@ def test_a_table_is_joined_by_straight_lines() -> None:
         ({"load": [{"formula": "3*s +"}]}, "the formula ends too early"),
         ({"spring": [{"stiffness_n_mm": -1}]}, "0 to"),
         ({"spring": [{"on": "follower"}]}, "a stiffness, a preload, or both"),
-        ({"spring": [{"stiffness_nm_rad": 1}]}, "stiffness_n_mm and preload_n"),
+        ({"spring": [{"stiffness_nm_rad": 1}]}, "preload_n and damping_n_s_mm"),
         ({"spring": [{"stiffness_n_mm": "solve", "preload_n": "solve"}]}, "one of them"),
         ({"spring": [{"preload_n": "solve"}, {"preload_n": "solve"}]}, "all springs but one"),
         ({"mass": [{"of": "follower"}]}, "mass_kg"),

@@ -199,7 +199,7 @@ REFUSED: dict[str, tuple[Any, Any, str]] = {
     "both wheels": (ELLIPSE, [*LOAD, {"on": "wheel1", "torque_nm": 3}], "follows from"),
     "a force on a wheel": (ELLIPSE, [{"force_n": 3}], "acts on a wheel"),
     "a torque on a rack": (RACK, LOAD, "acts on a rack"),
-    "phi2 of a rack": (RACK, [{"formula": "phi2"}], "no angle phi2"),
+    "phi2 of a rack": (RACK, [{"formula": "phi2"}], "no phi2"),
     "a short table": (ELLIPSE, [{"table": [1, 2], "at_deg": [0, 300]}], "ends inside the turn"),
     "a late table": (ELLIPSE, [{"table": [1, 2], "at_deg": [0, 400]}], "beyond the turn"),
     "a pole": (ELLIPSE, [{"formula": "1/phi1"}], "is not finite at phi1 = 0 deg"),

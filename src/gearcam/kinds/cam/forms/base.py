@@ -24,7 +24,7 @@ from gearcam.designs.table import table_of
 from gearcam.designs.validate import placed_faults
 from gearcam.kinds.cam.tables import CamBlank, CamOutputSpec
 from gearcam.laws.program import Program, make_program
-from gearcam.mechanics.drive import DriveSpec
+from gearcam.mechanics.drive import CamDriveSpec
 from gearcam.mechanics.load import LoadSpec
 
 if TYPE_CHECKING:
@@ -65,6 +65,8 @@ F = TypeVar("F", bound=FollowerSpec)
 def lift_program(design: Any, tolerances: Tolerances) -> Program:
     """Return the lift of a `design` over a turn, which does not depend on sizes.
 
+    That of a polydyne cam is corrected for its elastic follower.
+
     Parameters
     ----------
     design : Design
@@ -74,7 +76,12 @@ def lift_program(design: Any, tolerances: Tolerances) -> Program:
     """
     motion = design.motion
     make = partial(make_program, motion) if isinstance(motion, Sequence) else motion.program
-    return make(tolerances, oscillating=design.follower.oscillating)
+    program = make(tolerances, oscillating=design.follower.oscillating)
+    if not getattr(design.drive, "polydyne", False):
+        return program
+    from gearcam.kinds.cam.polydyne import corrected
+
+    return corrected(design, program)
 
 
 class Form(ABC, Generic[C, S, F]):
@@ -95,7 +102,7 @@ class Form(ABC, Generic[C, S, F]):
     tables: ClassVar[dict[str, type]] = {
         "follower": FollowerSpec,
         "cam": CamSpec,
-        "drive": DriveSpec,
+        "drive": CamDriveSpec,
         "load": LoadSpec,
         "blank": CamBlank,
         "output": CamOutputSpec,

@@ -1,0 +1,404 @@
+"""The study of the dynamics of a cam: its follower in motion on an elastic train."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from gearcam.base.facts import Fact, Tree, extent
+from gearcam.base.findings import limit_of, run_checks
+from gearcam.base.numerals import formatted
+from gearcam.dynamics.follower_checks import MOVING, MovingFollower
+from gearcam.dynamics.periodic import Periodic
+from gearcam.dynamics.residual import residual
+from gearcam.kinds.cam.moving import MovingCam
+from gearcam.kinds.follower_forces import solved_springs
+from gearcam.kinds.over_driver import over_driver
+from gearcam.laws.motion import MOTION_LAWS
+from gearcam.laws.phases_of_lift import RisePhase
+from gearcam.pictures.charts import Chart, Limit, Line
+from gearcam.results.study import StudyResult
+
+if TYPE_CHECKING:
+    from gearcam.dynamics.follower_motion import Flight
+    from gearcam.kinds.cam.moving import Moment
+    from gearcam.kinds.cam.result import CamResult
+    from gearcam.numeric.arrays import Array
+    from gearcam.results.study import Progress
+
+_SHOWN: Final = ("harmonic", "cycloidal", "constant-acceleration", "3-4-5", "modified-sine")
+"""Laws in the chart of residual vibrations, beside those of the design."""
+
+_SPECTRUM: Final = 4096
+"""Even places of the turn for the spectrum."""
+
+_RATIOS: Final = 601
+"""Places in the chart of residual vibrations."""
+
+_SPEEDS: Final = 61
+"""Speeds in the chart of vibrations over the speed."""
+
+_INSIDE: Final = 100
+"""Places of a dwell at which vibrations are looked at there."""
+
+_FARTHEST: Final = 100.0
+"""Largest time of a rise over the natural period in that chart: beyond hardly anything is left."""
+
+_NOISE: Final = 1e-9
+"""Share of the largest value that is 0."""
+
+
+def study_dynamics(result: CamResult, progress: Progress) -> StudyResult:
+    """Return the study of the dynamics of a cam (see `gearcam.dynamics.follower`).
+
+    Parameters
+    ----------
+    result : CamResult
+        The cam.
+    progress : Progress
+        Called with what is computed, the number done and their total.
+
+    Returns
+    -------
+    StudyResult
+        Its rows are those of ``dynamics.csv``.
+
+    Raises
+    ------
+    DesignError, InfeasibleError
+        If the dynamics of the design are not known, or it is impossible.
+    """
+    progress("motion", 0, 2)
+    with result.stage("dynamics"):
+        moving = MovingCam(result)
+        moment = moving.at(moving.places)
+        _ = moment.normal
+        progress("jump", 1, 2)
+        findings = ()
+        if moving.elastic:
+            findings = run_checks(MOVING, _checked(moving, moment), result.design.limits)
+        facts = _facts(moving, moment)
+    return StudyResult(
+        result=result,
+        study=result.kind.studies["dynamics"],
+        file="dynamics.csv",
+        table=_columns(moving, moving.at(moving.rows)),
+        group=facts,
+        study_findings=findings,
+        drawn=partial(_charts, moving, moment),
+    )
+
+
+def _timed(moving: MovingCam) -> list[tuple[str, float]]:
+    """Return names of velocity and acceleration, with their units over those by the angle."""
+    motion = moving.result.cam.motions[0]
+    return list(motion.timed_scales(moving.speed).items())
+
+
+def _lift(moving: MovingCam) -> tuple[float, str]:
+    """Return the unit of lifts over that inside, and its name."""
+    return moving.result.cam.motions[0].follower.lift_unit
+
+
+def _columns(moving: MovingCam, moment: Moment) -> dict[str, Any]:
+    """Return the columns of ``dynamics.csv``."""
+    driver, drive = moving.result.driver, moving.result.design.drive
+    (scale, unit), (load_scale, _, suffix) = _lift(moving), moving.result.follower.load_unit
+    last, statics = moment.motions[-1], moment.statics
+    velocity, acceleration = _timed(moving)[:2]
+    effort, per = drive.effort
+    columns = {
+        "t_s": moment.x / moving.speed,
+        driver.column: driver.scale * moment.x,
+        f"lift_{unit}": scale * moment.rigid.s,
+        **{f"x{k}_{unit}": scale * one.s for k, one in enumerate(moment.motions, 1)},
+        velocity[0]: velocity[1] * last.ds,
+        acceleration[0]: acceleration[1] * last.d2s,
+        f"load_{suffix}": load_scale * statics.against,
+        "contact_n": moment.normal,
+        "contact": moment.contact.astype(int),
+        effort: per * moment.torque,
+        "pressure_mpa": moment.pressure,
+    }
+    return {
+        name: values if values.dtype.kind == "i" else np.ma.masked_invalid(values)
+        for name, values in columns.items()
+    }
+
+
+def _at(moving: MovingCam, moment: Moment, index: int) -> str:
+    return moving.result.driver.place(float(moment.x[index]))
+
+
+def _range(moving: MovingCam, moment: Moment, values: Array, label: str, unit: str) -> Fact | None:
+    """Return least and largest value, with the place of the largest."""
+    values = np.where(np.isfinite(values), values, np.nan)
+    if np.isnan(values).all():
+        return None
+    ends = extent(float(np.nanmin(values)), float(np.nanmax(values)))
+    place = f"largest {_at(moving, moment, int(np.nanargmax(values)))}"
+    noise = _NOISE * float(np.nanmax(np.abs(values)))
+    return Fact(ends, label, place=place, unit=unit, shown=True, noise=noise)
+
+
+def _dwells(moving: MovingCam, moment: Moment) -> list[tuple[float, float, float]]:
+    """Return ends of each dwell, rad, and the largest distance from rest in it."""
+    found = []
+    for one in moving.result.program.stretches if moving.elastic else ():
+        inside = (moment.x >= one.start) & (moment.x < one.end)
+        if one.kind == "dwell" and inside.any():
+            found.append((one.start, one.end, float(np.abs(moment.residual[inside]).max())))
+    return found
+
+
+def _arc(moving: MovingCam, flight: Flight) -> str:
+    """Return an arc in words."""
+    low, high = (formatted(math.degrees(one), 5) for one in (flight.start, flight.end))
+    return f"{moving.result.driver.symbol} = {low} to {high} deg"
+
+
+def _impact(moving: MovingCam) -> float:
+    """Return the largest speed of impact, in the unit of velocities; 0 without any."""
+    scale = _lift(moving)[0]
+    return scale * max((one.impact for one in moving.turn.flights), default=0.0)
+
+
+def _checked(moving: MovingCam, moment: Moment) -> MovingFollower:
+    """Return what is checked."""
+    turn, drive = moving.turn, moving.result.design.drive
+    total = float(np.ptp(moving.result.program.range))
+    dwells = _dwells(moving, moment)
+    worst = max(dwells, key=lambda one: one[2], default=(0.0, 0.0, 0.0))
+    low, high = (moving.result.driver.text(one) for one in worst[:2])
+    normal, least = moment.normal, math.nan
+    if not moving.held:
+        least = float(np.nanmin(normal) / np.nanmean(normal))
+    return MovingFollower(
+        flights=[_arc(moving, one) for one in turn.flights],
+        impact=_impact(moving),
+        unit=f"{_lift(moving)[1]}/s",
+        stays=drive.words(moving.jump) if moving.jump else "",
+        least=least,
+        least_at=_at(moving, moment, int(np.nanargmin(normal))),
+        residual=worst[2] / total,
+        residual_at=f"dwell from {low} to {high}",
+        repeats=turn.repeats,
+        energy_residue=turn.energy_residue,
+        tolerance=turn.tolerance,
+    )
+
+
+def _facts(moving: MovingCam, moment: Moment) -> Tree:
+    """Return the facts of the study."""
+    result, limits = moving.result, moving.result.design.limits
+    effort, scale = result.design.drive.effort
+    pressure = np.where(moment.contact, moment.pressure, np.nan)
+    (name, per), peak = _timed(moving)[1], float(np.abs(moment.motions[-1].d2s).max())
+    rigid = float(np.abs(moment.rigid.d2s).max())
+    tree: Tree = {
+        "contact_force_n": _range(
+            moving, moment, moment.normal, "normal force between cam and follower", "N"
+        ),
+        "jump_rpm": _jumps(moving),
+        "acceleration": {
+            f"peak{name.removeprefix('acceleration')}": Fact(
+                per * peak, "largest acceleration of the follower", shown=True
+            ),
+            "over_rigid": Fact(peak / rigid, "over that of a rigid follower", unit=""),
+        },
+        "pressure_mpa": _range(moving, moment, pressure, "contact pressure", "MPa"),
+        effort: _range(
+            moving, moment, scale * moment.torque,
+            "torque of the cam", "N m",
+        ),
+        "spring": solved_springs(moving.loads, moving.solved) or None,
+    }  # fmt: skip
+    if not moving.elastic:
+        return tree
+    turn, follower = moving.turn, moving.follower
+    unit_scale, unit = _lift(moving)
+    load_scale, load_unit, suffix = result.follower.load_unit
+    bend, per_unit = ("nm_rad", 1e-3) if result.follower.angular else ("n_mm", 1.0)
+    least = limit_of(MOVING, "residual-vibration", limits)
+    total = unit_scale * float(np.ptp(result.program.range))
+    force_error, place_error = turn.error
+    hertz = (follower.frequencies / (2.0 * math.pi)).tolist()
+    contact = None if moving.spec.contact_stiffness is None else moving.contact_stiffness
+    return tree | {
+        "natural_frequency_hz": Fact(
+            hertz,
+            "natural frequencies",
+            text=" and ".join(map(formatted, hertz)),
+            shown=True,
+        ),
+        f"contact_stiffness_{bend}": None
+        if contact is None
+        else Fact(per_unit * contact, "stiffness of the contact along the lift"),
+        "lost": [
+            {
+                "from_deg": math.degrees(one.start),
+                "to_deg": math.degrees(one.end),
+                f"impact_{unit}_s": None if math.isnan(one.impact) else unit_scale * one.impact,
+            }
+            for one in turn.flights
+        ]
+        or None,
+        "residual": [
+            {
+                "from_deg": math.degrees(low),
+                "to_deg": math.degrees(high),
+                f"residual_{unit}": Fact(
+                    unit_scale * swing, "vibration in the dwell", at_most=least * total, unit=unit
+                ),
+            }
+            for low, high, swing in _dwells(moving, moment)
+        ]
+        or None,
+        "method": turn.method,
+        "turns": turn.turns,
+        "repeats": turn.repeats,
+        "energy_residue": Fact(turn.energy_residue, "energies balance to", unit="", shown=True),
+        f"error_{suffix}": Fact(
+            load_scale * force_error, "error of the contact force along the lift", unit=load_unit
+        ),
+        f"error_{unit}": Fact(unit_scale * place_error, "error of the follower's place", unit=unit),
+    }
+
+
+def _jumps(moving: MovingCam) -> Tree | None:
+    """Return the speeds at which the follower leaves its cam, rpm."""
+    if moving.held:
+        return None
+    found: Tree = {}
+    release, factor = moving.loads.release, moving.result.design.drive.quantity.factor
+    if release is not None:
+        found["rigid"] = Fact(release[0] / factor, "a rigid follower jumps at", unit="rpm")
+    if moving.elastic and moving.jump is not None:
+        text = "" if moving.jump else "all low speeds"
+        label, unit = "the elastic follower jumps at", "rpm" if moving.jump else ""
+        found["elastic"] = Fact(moving.jump / factor, label, unit=unit, text=text, shown=True)
+    return found
+
+
+def _charts(moving: MovingCam, moment: Moment) -> dict[str, Chart]:
+    """Return the charts of the study."""
+    chart, x = over_driver(moving.result), moving.result.driver.scale * moment.x
+    (scale, unit), (name, per) = _lift(moving), _timed(moving)[1]
+    rigid = moving.under.statics(moment.x, np.ones_like(moment.x))
+    of_rigid = np.where(rigid.lifted, 0.0, rigid.force)
+    charts = {
+        "contact": chart(
+            title="Normal force between cam and follower",
+            y="normal force, N",
+            lines=(
+                Line(label="moving follower", x=x, y=moment.normal),
+                Line(label="rigid follower", x=x, y=of_rigid),
+            ),
+        ),
+        "lag": chart(
+            title="ElasticFollower's place less the lift",
+            y=f"difference, {unit}",
+            lines=tuple(
+                Line(label=f"mass {k}", x=x, y=scale * (one.s - moment.rigid.s))
+                for k, one in enumerate(moment.motions, 1)
+            ),
+        ),
+        "acceleration": chart(
+            title="Acceleration of the follower",
+            y=f"acceleration, {name.removeprefix('acceleration_').replace('_', '/')}",
+            lines=(
+                Line(label="moving follower", x=x, y=per * moment.motions[-1].d2s),
+                Line(label="rigid follower", x=x, y=per * moment.rigid.d2s),
+            ),
+        ),
+    }
+    if moving.elastic:
+        charts["spectrum"] = _spectrum(moving)
+        charts["residual"] = _residuals(moving)
+        if any(one.kind == "dwell" for one in moving.result.program.stretches):
+            charts["speed"] = _over_speed(moving)
+    return charts
+
+
+def _over_speed(moving: MovingCam) -> Chart:
+    """Return the vibration in the dwells of this cam at other speeds, while contact is kept."""
+    (scale, unit), quantity = _lift(moving), moving.result.design.drive.quantity
+    x = np.concatenate(
+        [
+            np.linspace(one.start, one.end, _INSIDE + 1)[:-1]
+            for one in moving.result.program.stretches
+            if one.kind == "dwell"
+        ]
+    )
+    speeds, found = moving.speed * np.linspace(0.5, 1.5, _SPEEDS), []
+    for speed in speeds.tolist():
+        follower = replace(moving.follower, speed=speed)
+        lag = Periodic(follower).at(x)[2 * len(follower.masses) - 2]
+        found.append(float(np.abs(lag - follower.rest(x)[-1]).max()))
+    return Chart(
+        title="Largest vibration in a dwell over the speed, in contact",
+        x=f"speed of this cam, {quantity.unit}",
+        y=f"amplitude, {unit}",
+        lines=(Line(label="follower", x=speeds / quantity.factor, y=scale * np.array(found)),),
+    )
+
+
+def _spectrum(moving: MovingCam) -> Chart:
+    """Return the harmonics of the accelerations over the turn."""
+    even = moving.result.program.period * np.arange(_SPECTRUM) / _SPECTRUM
+    moment, (name, per) = moving.at(even), _timed(moving)[1]
+    most = int(min(1.5 * moving.follower.periods + 10.0, _SPECTRUM // 4))
+
+    def harmonics(values: Array) -> Array:
+        return 2.0 / _SPECTRUM * np.abs(np.fft.rfft(per * values))[1 : most + 1]
+
+    order = np.arange(1.0, most + 1.0)
+    unit = name.removeprefix("acceleration_").replace("_", "/")
+    return Chart(
+        title="Harmonics of the acceleration",
+        x="harmonic of the turn",
+        y=f"amplitude, {unit}",
+        log="y",
+        lines=(
+            Line(label="moving follower", x=order, y=harmonics(moment.motions[-1].d2s)),
+            Line(label="rigid follower", x=order, y=harmonics(moment.rigid.d2s)),
+        ),
+    )
+
+
+def _residuals(moving: MovingCam) -> Chart:
+    """Return the residual vibrations of laws over the time of a rise, and of the design's own."""
+    result, tolerances = moving.result, moving.result.tolerances
+    frequency = float(moving.follower.frequencies[0]) / (2.0 * math.pi * moving.follower.speed)
+    laws: dict[str, Any] = {name: MOTION_LAWS[name].example for name in _SHOWN}
+    dots = []
+    motion = result.design.motion
+    phases = motion if isinstance(motion, tuple) else ()
+    for phase, placed in zip(phases, result.program.stretches, strict=False):
+        if isinstance(phase, RisePhase):
+            ratio = np.array([frequency * (placed.end - placed.start)])
+            if ratio[0] > _FARTHEST:
+                continue
+            y = residual(phase.law.build(tolerances).function, ratio)
+            dots.append((f"{placed.kind} from {formatted(math.degrees(placed.start), 4)} deg",
+                         ratio, y))  # fmt: skip
+    top = max(6.0, *(1.2 * float(ratio[0]) for _, ratio, _ in dots)) if dots else 6.0
+    ratios = np.linspace(0.0, top, _RATIOS)
+    lines = [
+        Line(label=name, x=ratios, y=residual(law.build(tolerances).function, ratios))
+        for name, law in laws.items()
+    ]
+    lines += [Line(label=label, x=x, y=y, dots=True) for label, x, y in dots]
+    limit = limit_of(MOVING, "residual-vibration", result.design.limits)
+    return Chart(
+        title="Vibration after a rise without damping, over its height",
+        x="time of the rise over the natural period",
+        y="amplitude over height",
+        log="y",
+        lines=tuple(lines),
+        limits=(Limit(label="limit", value=limit),) if limit else (),
+    )
