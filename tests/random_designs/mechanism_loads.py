@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from random_designs.draw import short
+from random_designs.motors import moved
 
 if TYPE_CHECKING:
     from random_designs.mechanism import Machine
@@ -35,6 +36,10 @@ def loaded(m: Machine, made: dict[str, Any]) -> None:
         made["output"]["studies"] = ["torque"]
     _rubbed(m, made)
     _studied(m, made)
+    if d.chance(0.2):
+        master = m.tables["drive"][0]
+        torque = short(m.size * d.log(0.01, 3))
+        moved(d, made, torque, master["speed_rpm"], m.opened or "range_deg" in master)
 
 
 def _changes(m: Machine) -> bool:

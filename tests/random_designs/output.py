@@ -243,7 +243,7 @@ def tables_as_files(d: Draw, document: Mapping[str, Any], name: str) -> dict[str
         columns = [key for key in _COLUMNS if isinstance(table.get(key), list)]
         given = [table[key] for key in columns]
         is_table = "table" in (table.get("type"), table.get("law")) or "theta_deg" in columns
-        if is_table and d.chance(0.5):
+        if columns and is_table and d.chance(0.5):
             file = f"{name}-{number}.csv"
             table["file"] = file
             for key in columns:

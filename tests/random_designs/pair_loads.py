@@ -1,10 +1,11 @@
-"""Loads, friction and materials of random pairs, and settings of their stress."""
+"""Loads, friction and materials of random pairs, their motors, and settings of their stress."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from random_designs.draw import Draw, short
+from random_designs.motors import moved
 
 
 def loaded(d: Draw, made: dict[str, Any], module: float, travel: float | None) -> None:
@@ -44,6 +45,29 @@ def loaded(d: Draw, made: dict[str, Any], module: float, travel: float | None) -
         made["output"]["studies"] = ["forces"]
     if d.chance(0.5) and "steps" not in made:
         made["stress"] = _stress(d, made["pair"]["teeth"], module)
+    if not rack and d.chance(0.3):
+        _moved(d, made, module, opened=travel is not None)
+
+
+def _moved(d: Draw, made: dict[str, Any], module: float, *, opened: bool) -> None:
+    """Give a motor, and elastic teeth to some; elements would take seconds."""
+    load = made["load"][0]
+    if d.chance(0.9):
+        load["on"] = "wheel2"
+    rpm = made.setdefault("drive", {}).setdefault("speed_rpm", short(d.log(10, 1000)))
+    size = 1e-3 * module**3
+    if d.chance(0.3):
+        made["load"] = [{"on": "wheel2", "formula": f"{short(size / rpm)}*(omega2 + 3)"}]
+    inertia = moved(d, made, short(size * d.log(0.1, 100)), rpm, opened)
+    dynamics = made["dynamics"]
+    if d.chance(0.9):
+        dynamics["inertia_kg_m2"] = [inertia, short(inertia * d.log(0.1, 10))]
+    if d.chance(0.3):
+        dynamics |= {"stiffness_n_mm_um": short(d.log(1, 30)), "damping_ratio": d.even(0.02, 0.3)}
+        dynamics |= {"turns": 1, "method": d.pick(["auto", "radau", "bdf", "lsoda", "dop853"])}
+        dynamics["rigid"] = d.chance(0.2)
+    elif d.chance(0.1):
+        dynamics |= {"finite_elements": True, "rigid": d.chance(0.9)}
 
 
 def _load(d: Draw, on: str, module: float, travel: float | None) -> dict[str, Any]:

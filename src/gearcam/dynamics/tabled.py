@@ -33,6 +33,8 @@ class Tabled(ShortRepr):
         Whether the functions repeat after the last knot.
     cuts : int
         First number of cells, a power of 2.
+    sizes : float or (m,) array
+        What the error is relative to where a function is smaller than this.
 
     Raises
     ------
@@ -48,11 +50,12 @@ class Tabled(ShortRepr):
         *,
         closed: bool = True,
         cuts: int = 32,
+        sizes: ArrayLike = 0.0,
     ) -> None:
         knots = np.asarray(knots, dtype=float)
         self.low, self.closed = float(knots[0]), closed
         self.period = float(knots[-1]) - self.low
-        self._columns = expand_all(functions, knots, tolerance, cuts=cuts)
+        self._columns = expand_all(functions, knots, tolerance, cuts=cuts, sizes=sizes)
 
     @property
     def edges(self) -> Array:

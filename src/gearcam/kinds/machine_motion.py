@@ -20,7 +20,7 @@ from gearcam.dynamics.motors import ConstantMotor, motor_of
 from gearcam.dynamics.regime import even_torque, flywheel, regime
 from gearcam.dynamics.rigid import RigidMotion, RigidRun
 from gearcam.dynamics.settings import COAST, DYNAMICS, REGIME, START, TURNS
-from gearcam.numeric.piecewise import with_both_sides
+from gearcam.numeric.piecewise import extremes, with_both_sides
 from gearcam.pictures.charts import Chart, Line, knot_marks
 from gearcam.pictures.scenes import PLACES
 
@@ -44,6 +44,9 @@ _HIGHEST: Final = 4
 
 _SAME: Final = 1e-9
 """Difference of loads over the largest that is rounding."""
+
+_LIGHT: Final = 1e-9
+"""Moment of inertia, over the largest, up to which it is none."""
 
 _ROWS: Final = 100_000
 """Largest number of rows of the table."""
@@ -248,13 +251,14 @@ class MachineRun(ShortRepr):
         self._demand_turns()
         machine, spec = self.machine.with_flywheel(inertia), self.spec
         turns = spec.turns or (3 if machine.closed else 1)
-        if not machine.inertia(machine.rows(float(machine.knots[0]))) > 0.0:
-            what = "nothing of the machine has inertia"
-            raise InfeasibleError(what, where="dynamics", nearest="a flywheel, or masses")
         if self.motor is None:
             return RigidMotion(
                 machine=machine, motor=None, knots=machine.knots, even=self.speed or 0.0
             )
+        place, least, most = self._lightest
+        if not least + inertia > _LIGHT * (most + inertia):
+            what = f"nothing that moves at {self.place(place)} has inertia"
+            raise InfeasibleError(what, where="dynamics", nearest="a flywheel, or masses")
         run = RigidRun(
             machine=machine,
             motor=self.motor,
@@ -272,6 +276,20 @@ class MachineRun(ShortRepr):
         if self.motor.settles:
             return regime(run)
         return even_torque(run, self.speed or 0.0)
+
+    @cached_property
+    def _lightest(self) -> tuple[float, float, float]:
+        """Where the moment of inertia is least, rad, and its least and largest value, kg m2."""
+        machine = self.machine
+
+        def inertia(phi: Array) -> list[Array]:
+            row = machine.rows.at(phi)
+            return [np.asarray(one(row)) for one in (machine.inertia, machine.inertia_slope)]
+
+        edges = np.union1d(machine.rows.edges, machine.knots)
+        places, values = extremes(inertia, edges, cells=True)
+        low = int(values.argmin())
+        return round(float(places[low]), 9), float(values[low]), float(values.max())
 
     def _demand_turns(self) -> None:
         """Refuse a regime, or turns, of a machine that has a travel."""

@@ -182,6 +182,7 @@ def expand_all(
     *,
     degree: int = _DEGREE,
     cuts: int = FIRST_CUTS,
+    sizes: ArrayLike = 0.0,
 ) -> list[Expansion]:
     """Return the expansions of several functions on the same intervals (see `expand`).
 
@@ -191,6 +192,8 @@ def expand_all(
         ``functions(x) -> (m, n) array`` at n places.
     breaks, tolerance, degree, cuts
         As for `expand`; the tolerance is relative to the largest value of each function.
+    sizes : float or (m,) array
+        Or relative to these, where a function is smaller: it may be nothing but rounding.
 
     Returns
     -------
@@ -209,7 +212,7 @@ def expand_all(
     edges = divided(grid, parts)
     low, high = edges[:-1], edges[1:]
     done: list[tuple[Array, Array, Array]] = []
-    scale: Array | float = 0.0
+    scale = np.asarray(sizes, dtype=float)
     before = np.full(low.shape, np.inf)
     for halving in range(halvings + 1):
         x = 0.5 * (low + high) + 0.5 * (high - low) * nodes[:, None]

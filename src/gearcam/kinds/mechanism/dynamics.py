@@ -61,14 +61,17 @@ def machine_of(work: VirtualWork, speed: float) -> ReducedMachine:
         whole = (np.asarray(one.c[0]) for part, one in parts.items() if part != INERTIA)
         return _NM * sum(whole, start=np.zeros(q.shape))
 
-    coefficients = speed_powers(moment, np.linspace(*work.linkage.span, _PROBES), speed)
+    places = np.linspace(*work.linkage.span, _PROBES)
+    coefficients = speed_powers(moment, places, speed)
 
     def rows(q: Array) -> Array:
         inertia = work.reduced_inertia(q, 1).derivatives()
         return np.stack([*(one + np.zeros(q.shape) for one in inertia), *coefficients(q)])
 
+    sizes = np.zeros(len(rows(places)))
+    sizes[1] = np.abs(rows(places)[0]).max()  # of an even inertia the derivative is rounding
     try:
-        tabled = Tabled(rows, work.knots, _EXACT, closed=work.linkage.closed)
+        tabled = Tabled(rows, work.knots, _EXACT, closed=work.linkage.closed, sizes=sizes)
     except NotSmoothError as error:
         what = f"what acts on the mechanism is {'not smooth' if error.finite else 'not finite'}"
         where = f"{np.degrees(error.place):.6g} deg"
