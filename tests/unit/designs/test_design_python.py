@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import gearcam as gc
 from gearcam.base.errors import DesignError
 from gearcam.designs import document_of, loads
 from gearcam.gears.spec import PairSpec
