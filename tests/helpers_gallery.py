@@ -322,6 +322,10 @@ NUMBERS: dict[str, dict[str, Number]] = {
         "pair.module_mm": (4.9229880875, 1e-10),
         "gears[0].centrode.length_mm": (556.7768355399, 1e-10),
     },
+    "rattling_pair": {
+        "pair.module_mm": (4.9229880875, 1e-10),
+        "gears[0].centrode.length_mm": (556.7768355399, 1e-10),
+    },
     "askew_pair": {
         "errors.alone.center.backlash_mm.min": (play_apart, 1e-9),
         # 2*e/(r*cos(alpha)); between phases of 10 degrees at most 0.4 % of it are missed

@@ -222,7 +222,7 @@ class Design:
                 for step in path:
                     place = place.setdefault(step, {}) if isinstance(place, dict) else place[step]
                 step = last
-                place[last] = value
+                place[last] = _own(value)  # later changes may lie within it
             except (IndexError, KeyError, TypeError, ValueError):  # the last: no step at all
                 allowed, hint = _numbered(place, step)
                 what = "there is no such key or index"
@@ -232,6 +232,13 @@ class Design:
 
     def _settle(self) -> None:
         """Convert alternative forms of input into one form."""
+
+
+def _own(value: Any) -> Any:
+    """Return a value whose tables and lists are copies."""
+    if isinstance(value, Mapping):
+        return {key: _own(one) for key, one in value.items()}
+    return [_own(one) for one in value] if isinstance(value, list) else value
 
 
 def _numbered(place: Any, step: str | int) -> tuple[str, str]:

@@ -163,10 +163,11 @@ class Motion(ShortRepr):
         if x.size and not self.pieces[0].low - near <= x.min() <= x.max() <= self.place + near:
             raise ValueError(f"kept from {self.pieces[0].low} to {self.place} only")
         number = self._number(x)
+        order = np.argsort(number, kind="stable")
         found = np.empty((len(self.end), x.size))
-        for one in np.unique(number).tolist():
-            own = number == one
-            found[:, own] = self.pieces[one].at(x[own])
+        starts = np.flatnonzero(np.diff(number[order], prepend=-1))
+        for own in np.split(order, starts[1:]) if x.size else ():
+            found[:, own] = self.pieces[int(number[own[0]])].at(x[own])
         return found
 
     def modes(self, x: ArrayLike) -> list[str]:

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import gearcam as gc
 from gearcam.base.errors import DesignError
 from gearcam.designs import document_of, loads
 from gearcam.gears.spec import PairSpec
@@ -77,3 +78,10 @@ def test_degrees_keep_their_range_through_radians(angle: float) -> None:
     rack = f"\n[rack]\npressure_angle_deg = {angle!r}\n"
     design = loads(PAIR.replace("[output]", rack + "[output]"))
     assert document_of(design)["rack"]["pressure_angle_deg"] == pytest.approx(angle, rel=1e-12)
+
+
+def test_changes_within_a_table_that_is_given_leave_it_as_it_is() -> None:
+    law = {"type": "ellipse", "eccentricity": 0.3}
+    made = gc.load("profiles/ellipse.toml").with_({"law": law, "law.eccentricity": 0.2})
+    assert made.law.eccentricity == 0.2
+    assert law == {"type": "ellipse", "eccentricity": 0.3}

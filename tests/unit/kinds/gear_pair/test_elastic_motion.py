@@ -1,0 +1,150 @@
+"""Pairs with elastic teeth in motion: stiffness, lag, backlash, resonance, and what they refuse."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gearcam as gc
+from gearcam.base.errors import DesignError, InfeasibleError
+from gearcam.base.quantities import ARCSEC
+
+ELASTIC = {"inertia_kg_m2": [0.02, 0.03], "stiffness_n_mm_um": 14}
+LOAD = [{"on": "wheel2", "torque_nm": 40}]
+
+
+def design(profile: str, **changes: Any) -> Any:
+    given = {"load": LOAD, "drive.speed_rpm": 20, "output.studies": [], "dynamics": ELASTIC}
+    return gc.load(f"profiles/{profile}.toml").with_({**given, **changes})
+
+
+@cache
+def slow(profile: str, backlash: float) -> Any:
+    """Return the motion at 20 rpm, of a turn."""
+    changes = {"pair.backlash_mm": backlash, "dynamics": {**ELASTIC, "turns": 1}}
+    return gc.build(design(profile, **changes)).study("dynamics")
+
+
+def test_a_slow_pair_lags_by_its_load_over_its_stiffness():
+    found = slow("ellipse", 0.0)
+    lag, phi1 = found.columns["lag_rad"], np.radians(found.columns["phi1_deg"])
+    # pairs of teeth in contact, each with its stiffness, at levers about the driven shaft
+    from gearcam.meshing.contact import contacts
+
+    touching = contacts(found.result.subject.sides[1], phi1)
+    width = found.result.design.pair.face_width
+    own = np.bincount(touching.step, 14e3 * width * touching.lever[1] ** 2, len(phi1)) / 1e3
+    # where pairs come and go those about to touch carry too, and the samples are joined smoothly
+    apart = np.abs(lag * own / 40.0 - 1.0)
+    assert np.median(apart) < 5e-3
+    assert found.facts["dynamics.energy_residue"] < 1e-4
+
+
+def test_backlash_adds_its_half_to_the_lag():
+    without, with_ = slow("circular", 0.0), slow("circular", 0.1)
+    radius = with_.result.pair.module * with_.result.pair.teeth[1] / 2.0
+    added = with_.columns["lag_rad"].mean() - without.columns["lag_rad"].mean()
+    assert added == pytest.approx(0.05 / radius, rel=2e-2)
+
+
+@pytest.mark.slow
+def test_by_finite_elements_a_slow_pair_lags_as_in_the_study_of_stress():
+    changes = {"dynamics": {"inertia_kg_m2": [0.02, 0.03], "finite_elements": True, "turns": 1}}
+    result = gc.build(design("circular", **changes))
+    lag = result.study("dynamics").facts["dynamics.lag_arcsec.max"]
+    stress = result.study("stress").facts["stress.lag_arcsec.max"]
+    assert lag == pytest.approx(stress, rel=0.02)
+
+
+def test_stiff_teeth_move_as_rigid_ones():
+    motor = {"type": "linear", "start_torque_nm": 3000, "idle_rpm": 120}
+    own = {
+        "dynamics.stiffness_n_mm_um": 1000,
+        "dynamics.damping_ratio": 0.2,
+        "motor": motor,
+        "dynamics.turns": 1,
+    }
+    elastic = gc.build(design("ellipse", **own)).study("dynamics")
+    rigid = gc.build(design("ellipse", **own, **{"dynamics.rigid": True})).study("dynamics")
+    for key in ("speed_rpm.min", "speed_rpm.max", "turn_s"):
+        assert elastic.facts[f"dynamics.{key}"] == pytest.approx(
+            rigid.facts[f"dynamics.{key}"], rel=1e-3
+        )
+    assert "dynamics.lag_arcsec.max" not in rigid.facts
+
+
+def test_the_last_turn_is_stated_with_its_own_angles_and_time():
+    columns = slow("circular", 0.1).columns
+    assert columns["phi1_deg"][[0, -1]] == pytest.approx([0.0, 360.0], abs=1e-9)
+    assert columns["t_s"][[0, -1]] == pytest.approx([0.0, 3.0], rel=1e-6)
+    assert np.diff(columns["phi1_deg"]).min() > 0.0
+    three = gc.build(design("circular", **{"drive.speed_rpm": 100})).study("dynamics").columns
+    assert three["phi1_deg"][-1] == pytest.approx(360.0)
+    assert three["t_s"][-1] == pytest.approx(0.6, rel=1e-6)
+
+
+def test_teeth_that_part_hit_and_are_told():
+    found = gc.build(gc.load("profiles/rattling_pair.toml")).study("dynamics")
+    codes = {one.code: one for one in found.study_findings}
+    assert codes["contact-lost"].value == pytest.approx(found.facts["dynamics.impact_rad_s"])
+    contact = found.columns["contact"]
+    assert {-1, 0, 1} == set(contact.tolist())
+    # apart, within the backlash, nothing is carried
+    assert np.abs(found.columns["torque_mesh_nm"][contact == 0]).max() < 1e-9
+    assert {"lag", "spectrum", "impacts"} <= set(found.charts)
+    assert found.facts["dynamics.error.lag_arcsec"] < 1e-2
+    quiet = gc.build(
+        gc.load("profiles/rattling_pair.toml").with_(
+            {"load": LOAD, "drive.speed_rpm": 40, "motor": {}, "dynamics.turns": 1}
+        )
+    ).study("dynamics")
+    assert "contact-lost" not in [one.code for one in quiet.study_findings]
+
+
+def test_a_resonance_is_told_at_the_speed_that_makes_it_and_not_far_from_it():
+    slowly = slow("circular", 0.0)
+    low, high = (slowly.facts[f"dynamics.natural_frequency_hz.{end}"] for end in ("min", "max"))
+    teeth = slowly.result.pair.teeth[0]
+
+    def codes(hz: float) -> list[str]:
+        changes = {"drive.speed_rpm": 60.0 * hz / teeth, "dynamics.turns": 1}
+        made = gc.build(design("circular", **changes)).study("dynamics")
+        return [one.code for one in made.study_findings]
+
+    assert "resonance" in codes(low)
+    assert "resonance" in codes(0.5 * high)
+    assert "resonance" not in codes(0.2 * low)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"dynamics.finite_elements": True}, "beside finite_elements"),
+        ({"dynamics.inertia_kg_m2": [0.1, 0.0]}, "no inertia"),
+        (
+            {
+                "dynamics.run": "start",
+                "motor": {"type": "linear", "start_torque_nm": 500, "idle_rpm": 90},
+            },
+            "begin at a speed",
+        ),
+        ({"dynamics.damping_ratio": 1.0}, "out of range"),
+    ],
+)
+def test_what_elastic_teeth_cannot_do_is_refused(changes, words):
+    with pytest.raises(DesignError, match=words):
+        gc.build(design("circular").with_(changes)).study("dynamics")
+
+
+def test_teeth_without_a_load_have_no_stiffness():
+    with pytest.raises(InfeasibleError, match="carry nothing"):
+        gc.build(design("circular", load=[])).study("dynamics")
+
+
+def test_units_of_the_lag():
+    found = slow("circular", 0.0)
+    most = found.columns["lag_rad"].max() / ARCSEC.factor
+    assert found.facts["dynamics.lag_arcsec.max"] == pytest.approx(most, rel=0.02)
