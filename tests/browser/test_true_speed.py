@@ -62,7 +62,9 @@ def opened(browser: Chrome, folder: Path, name: str, changes: dict[str, Any]) ->
 def played(browser: Chrome, count: int) -> tuple[Array, Array]:
     """Play from the first place on; return the times, s, and places of the frames."""
     go(browser, 0.0)
-    return np.linspace(0.0, 0.05 * count, count + 1), np.array(browser.execute_script(PLAYED, count))
+    return np.linspace(0.0, 0.05 * count, count + 1), np.array(
+        browser.execute_script(PLAYED, count)
+    )
 
 
 @pytest.mark.parametrize("name", MACHINES)

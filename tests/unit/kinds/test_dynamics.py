@@ -157,6 +157,44 @@ def test_a_motor_that_does_not_turn_the_load_at_rest_is_refused():
         study("log_spiral", changes)
 
 
+MACHINE = """kind = "mechanism"
+name = "shaft"
+drive = [{ name = "motor", even = true, speed_rpm = 100 }]
+crank = [{ name = "crank", on = "motor", joint = "pin", length_mm = 50, angle_deg = 33 }]
+guide = [{ name = "bed" }]
+load = [{ on = "motor", torque_nm = -20 }]
+mass = [%s]
+motor = { type = "constant", torque_nm = 30 }
+dynamics = { run = "start", turns = 2 }
+
+[[dyad]]
+type = "RRT"
+from = "pin"
+to = "bed"
+joint = "end"
+members = ["rod", "ram"]
+lengths_mm = [170, 0]
+"""
+
+
+def test_an_even_inertia_has_no_slope(tmp_path):
+    """That of a crank that turns about its axis is rounding, however it is drawn."""
+    (tmp_path / "shaft.toml").write_text(
+        MACHINE % '{ of = "crank", mass_kg = 7.3, at_mm = [13.6, 10.1], inertia_kg_m2 = 0.02 }'
+    )
+    found = gc.build(gc.load(tmp_path / "shaft.toml")).study("dynamics")
+    inertia = 0.02 + 7.3e-6 * (13.6**2 + 10.1**2)
+    assert found.columns["inertia_kg_m2"] == pytest.approx(inertia, rel=1e-9)
+    speed = np.sqrt(2.0 * 10.0 * np.radians(found.columns["theta_deg"]) / inertia)
+    assert found.columns["omega_rad_s"] == pytest.approx(speed, rel=1e-6)
+
+
+def test_a_machine_without_inertia_at_some_place_is_refused_by_it(tmp_path):
+    (tmp_path / "ram.toml").write_text(MACHINE % '{ of = "ram", mass_kg = 10 }')
+    with pytest.raises(InfeasibleError, match="nothing that moves at .* has inertia"):
+        gc.build(gc.load(tmp_path / "ram.toml")).study("dynamics")
+
+
 PAIR = {"dynamics.inertia_kg_m2": 0.2}
 LINEAR = {"type": "linear", "start_torque_nm": 20000, "idle_rpm": 190}
 

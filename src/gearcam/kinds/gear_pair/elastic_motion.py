@@ -273,7 +273,7 @@ class ElasticRun(PairRun):
             table=table,
             inertia=inertia,
             damping=0.0,
-            motor=None if self.motor is None else self.motor.torque,
+            motor=None if self.rigid.motor is None else self.rigid.motor.torque,
             load=load,
         )
         return made.damped(self._settings.damping_ratio)
@@ -319,7 +319,7 @@ class ElasticRun(PairRun):
         turned = self.machine.period * math.floor(low / self.machine.period + 1e-9)
         return ElasticMotion(
             machine=self.rigid.machine,
-            motor=self.motor,
+            motor=self.rigid.motor,
             run=run,
             knots=np.unique(np.concatenate([[low], inner, [high]])) - turned,
             turned=turned,

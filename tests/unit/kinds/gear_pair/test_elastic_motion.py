@@ -76,6 +76,15 @@ def test_stiff_teeth_move_as_rigid_ones():
     assert "dynamics.lag_arcsec.max" not in rigid.facts
 
 
+def test_an_even_motor_has_the_torque_that_keeps_the_mean_speed():
+    changes = {"motor": {"type": "constant", "flywheel_kg_m2": 50}, "dynamics.turns": 1}
+    found = gc.build(design("ellipse", **changes)).study("dynamics")
+    # wheels of equal teeth without friction: the torque of the load
+    assert found.columns["torque_motor_nm"] == pytest.approx(40.0, rel=1e-6)
+    works = found.facts["dynamics.works_j"]
+    assert works["motor"] == pytest.approx(works["load"] + works["lost"], rel=1e-3)
+
+
 def test_the_last_turn_is_stated_with_its_own_angles_and_time():
     columns = slow("circular", 0.1).columns
     assert columns["phi1_deg"][[0, -1]] == pytest.approx([0.0, 360.0], abs=1e-9)
