@@ -681,6 +681,13 @@ MACHINE_NUMBERS: dict[str, dict[str, Number]] = {
         "machine.dyads.C.pressure_angle_deg": (90 - _angle_between(120, 90, 70), 1e-9),
         "paths.P.length_mm": (235.975413454, 1e-4),  # for P at 60 mm and 35 deg
     },
+    "nail_machine_flywheel": {
+        # by another integrator, with the ratio by single points
+        "dynamics.flywheel_kg_m2": (19.807, 1e-3),
+        # of the press force over its travel, and of what acts against the driver
+        "dynamics.works_j.motor": (35.435 * 13.559405924468404 + 60 * 2 * math.pi, 1e-5),
+        "outputs.slide.stroke_mm": (300.0, 1e-10),
+    },
     "nail_machine_slide": {
         "outputs.slide.stroke_mm": (300.0, 1e-10),
         "outputs.slide.acceleration_mm_per_rad2": (150 * (1 - 150 / 750) * 1.6**2, 1e-9),

@@ -191,7 +191,7 @@ def test_an_even_inertia_has_no_slope(tmp_path):
 
 def test_a_machine_without_inertia_at_some_place_is_refused_by_it(tmp_path):
     (tmp_path / "ram.toml").write_text(MACHINE % '{ of = "ram", mass_kg = 10 }')
-    with pytest.raises(InfeasibleError, match="nothing that moves at .* has inertia"):
+    with pytest.raises(InfeasibleError, match=r"nothing that moves at .* has inertia"):
         gc.build(gc.load(tmp_path / "ram.toml")).study("dynamics")
 
 
