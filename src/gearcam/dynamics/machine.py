@@ -20,7 +20,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Self
 
 from gearcam.base.display import ShortRepr
 from gearcam.dynamics.tabled import Tabled
@@ -90,7 +90,7 @@ class Machine(ABC, ShortRepr):
         """Angle from its first to its last knot, rad: a turn, several turns, or a travel."""
         return float(self.knots[-1] - self.knots[0])
 
-    def with_flywheel(self, inertia: float) -> Machine:
+    def with_flywheel(self, inertia: float) -> Self:
         """Return the machine with another flywheel, kg m2."""
         return replace(self, flywheel=inertia)
 
@@ -157,13 +157,13 @@ class PairMachine(Machine):
         """
         ratio, load = row[0], self.driven_load(row, omega)
         carried = load + self.driven * row[1] * omega * omega
+        driver = self.driver + self.flywheel
         if driving is not None:
-            driver = self.driver + self.flywheel
             carried = driver * carried + self.driven * ratio * driving
         more = row[3] + (row[2] - row[3]) * (carried > 0.0) if self.rubs else 0.0 * ratio
-        if driving is None:
-            return carried, more
-        return carried / (driver + (ratio + more) * self.driven * ratio), more
+        if driving is not None:
+            carried = carried / (driver + (ratio + more) * self.driven * ratio)
+        return carried, more
 
     def resistance(self, row: Any, omega: Any, driving: Any) -> Any:
         """Return the torque that resists (see `Machine.resistance`)."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Protocol
 
 from gearcam.dynamics.machine import Machine
@@ -12,16 +13,27 @@ from gearcam.numeric.arrays import Array
 class MachineMotion(Protocol):
     """A motion over the driver's angle (see `gearcam.dynamics.rigid.RigidMotion`)."""
 
-    machine: Machine
-    motor: Motor | None
-    knots: Array
+    @property
+    def machine(self) -> Machine:
+        """What moves."""
+        ...
+
+    @property
+    def motor(self) -> Motor | None:
+        """What turns it; None at an even speed."""
+        ...
+
+    @property
+    def knots(self) -> Array:
+        """From the first to the last angle, rad: between them it is smooth."""
+        ...
 
     @property
     def ends(self) -> tuple[float, float]:
         """First and last angle, rad."""
         ...
 
-    @property
+    @cached_property
     def speeds(self) -> tuple[tuple[float, float], tuple[float, float]]:
         """Least and largest speed, each as (angle, rad/s)."""
         ...
@@ -41,12 +53,12 @@ class MachineMotion(Protocol):
         """Time, s."""
         ...
 
-    @property
+    @cached_property
     def works(self) -> tuple[float, float, float]:
         """Work of the motor, on the loads, and lost, J."""
         ...
 
-    @property
+    @cached_property
     def gained(self) -> float:
         """Energy gained, J."""
         ...
@@ -56,7 +68,7 @@ class MachineMotion(Protocol):
         """What the balance of works and energy leaves, as a share."""
         ...
 
-    @property
+    @cached_property
     def stopped(self) -> float | None:
         """Where the driver stopped, rad."""
         ...

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache, partial
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -45,8 +45,9 @@ def _root(
     """Return the root of a function that changes its sign between two places."""
     from scipy.optimize import brentq
 
-    found, _ = brentq(function, low, high, xtol=exact * high, rtol=exact, full_output=True)
-    return float(found)
+    tolerance: Any = exact
+    found = brentq(function, low, high, xtol=exact * high, rtol=tolerance)
+    return float(found)  # type: ignore[arg-type]
 
 
 def _widened(function: Callable[[float], float], middle: float, near: float) -> tuple[float, float]:

@@ -126,7 +126,8 @@ class RigidMotion(ShortRepr):
     def speeds(self) -> tuple[tuple[float, float], tuple[float, float]]:
         """Least and largest speed of the driver, each as (angle, rad/s)."""
         if self.motion is None:
-            return ((float(self.knots[0]), self.even),) * 2
+            only = float(self.knots[0]), self.even
+            return only, only
         places, values = extremes(self._speed_and_slope, self._cells, cells=True)
         low, high = int(values.argmin()), int(values.argmax())
         return (float(places[low]), float(values[low])), (float(places[high]), float(values[high]))
@@ -210,7 +211,7 @@ class RigidRun(ShortRepr):
     @cached_property
     def method(self) -> str:
         """The integrator: an implicit one if the motor's torque is very steep in the speed."""
-        phi = np.linspace(*self.machine.knots[[0, -1]], _PROBES)
+        phi = np.linspace(self.machine.knots[0], self.machine.knots[-1], _PROBES)
         row = self.machine.rows.at(phi)
         less, more = (np.full(phi.shape, share * self.scale) for share in (0.98, 1.02))
         steep = np.abs(self.motor.torque(phi, more) - self.motor.torque(phi, less))

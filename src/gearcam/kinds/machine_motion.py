@@ -208,8 +208,8 @@ class MachineRun(ShortRepr):
     def _found(self) -> tuple[float, RigidMotion]:
         given = self.design.motor.flywheel
         if given == "solve":
-            return flywheel(self._with, self.design.motor.irregularity)
-        return given, self._with(given)
+            return flywheel(self._moving, self.design.motor.irregularity)
+        return given, self._moving(given)
 
     @property
     def flywheel(self) -> float:
@@ -246,7 +246,7 @@ class MachineRun(ShortRepr):
                 )
         return motion
 
-    def _with(self, inertia: float) -> RigidMotion:
+    def _moving(self, inertia: float) -> RigidMotion:
         """Return the motion with a flywheel, kg m2."""
         self._demand_turns()
         machine, spec = self.machine.with_flywheel(inertia), self.spec

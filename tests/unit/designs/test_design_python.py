@@ -82,6 +82,6 @@ def test_degrees_keep_their_range_through_radians(angle: float) -> None:
 
 def test_changes_within_a_table_that_is_given_leave_it_as_it_is() -> None:
     law = {"type": "ellipse", "eccentricity": 0.3}
-    made = gc.load("profiles/ellipse.toml").with_({"law": law, "law.eccentricity": 0.2})
+    made: Any = gc.load("profiles/ellipse.toml").with_({"law": law, "law.eccentricity": 0.2})
     assert made.law.eccentricity == 0.2
     assert law == {"type": "ellipse", "eccentricity": 0.3}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -56,10 +57,12 @@ def test_a_start_from_rest_is_that_of_the_closed_form():
     machine = reduced(constant(2.0), constant(0.0), constant(30.0))
     run = RigidRun(machine=machine, motor=LinearMotor(100.0, 20.0), scale=20.0, rtol=1e-10)
     motion = run.from_rest(6.0)
-    phi = brentq(lambda p: motion.time(np.array([p]))[0] - 3.0, 1.0, 37.0, xtol=1e-13)
+    phi: Any = brentq(lambda p: motion.time(np.array([p]))[0] - 3.0, 1.0, 37.0, xtol=1e-13)
     assert abs(motion.speed(np.array([phi]))[0] - 14.0 * (1.0 - math.exp(-7.5))) < 3e-10
     assert abs(phi - (42.0 + 5.6 * (math.exp(-7.5) - 1.0))) < 1e-8
-    nearly = brentq(lambda p: motion.speed(np.array([p]))[0] - 0.99 * 14.0, 1.0, 37.0, xtol=1e-13)
+    nearly: Any = brentq(
+        lambda p: motion.speed(np.array([p]))[0] - 0.99 * 14.0, 1.0, 37.0, xtol=1e-13
+    )
     assert abs(motion.time(np.array([nearly]))[0] - 1.842068074) < 1e-8
 
 
@@ -78,7 +81,7 @@ def test_equal_torques_move_energy_by_the_difference_of_the_angles():
     machine, ratio, _ = ellipses(load=torque)
     run = RigidRun(machine=machine, motor=ConstantMotor(torque), scale=40.0, rtol=1e-11)
     omega = math.sqrt(2.0 * start / (1.0 + ratio(0.0) ** 2))
-    motion = run.from_speed(omega)
+    motion: Any = run.from_speed(omega)
     energy = float(motion.motion.at([2.0])[0, 0])
     assert abs(energy - 1257.602813995) < 1e-7  # E0 + T*(phi1 - phi2)
     assert motion.residue < 1e-11
@@ -148,7 +151,7 @@ def test_a_weak_motor_is_refused_with_a_load_that_has_a_regime():
 
 def test_an_even_torque_is_the_mean_of_the_load_and_keeps_the_mean_speed():
     machine = uneven()
-    motion = even_torque(RigidRun(machine=machine, motor=ConstantMotor(), scale=20.0), 20.0)
+    motion: Any = even_torque(RigidRun(machine=machine, motor=ConstantMotor(), scale=20.0), 20.0)
     even = RigidMotion(machine=machine, motor=None, knots=machine.knots, even=20.0)
     assert motion.mean_speed == pytest.approx(20.0, rel=1e-9)
     assert motion.motor.size == pytest.approx(even.works[1] / TURN, rel=1e-9)

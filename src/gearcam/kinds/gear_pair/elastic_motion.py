@@ -150,13 +150,13 @@ class ElasticMotion(ShortRepr):
         """Time of the turn, s."""
         return float(self._over[0])
 
-    @property
+    @cached_property
     def works(self) -> tuple[float, float, float]:
         """Work of the motor, on the loads, and lost, J."""
         motor, load, lost = self._over[4:].tolist()
         return motor, load, lost
 
-    @property
+    @cached_property
     def gained(self) -> float:
         """By how much the energy is larger at the end of the turn, J."""
         first, last = self.states(np.array(self.ends)).T
@@ -167,7 +167,7 @@ class ElasticMotion(ShortRepr):
         """What the balance of works and energy of the whole run leaves, as a share."""
         return self.run.residue
 
-    @property
+    @cached_property
     def stopped(self) -> float | None:
         """Where the driver stopped, rad."""
         return self.run.stalled[0] - self.turned if self.run.stalled else None
@@ -305,9 +305,13 @@ class ElasticRun(PairRun):
         )
         return first, second
 
-    @cached_property
+    @property
     def motion(self) -> ElasticMotion:
         """The last turn with elastic teeth."""
+        return self._last_turn
+
+    @cached_property
+    def _last_turn(self) -> ElasticMotion:
         run = self._runs[0]
         pieces, high = run.motion.pieces, run.motion.place
         low = max(pieces[0].low, high - self.machine.period)
@@ -481,7 +485,7 @@ class ElasticRun(PairRun):
         phi1 = np.interp(even, motion.time(fine) - motion.time(fine[:1]), fine)
         lag = motion.states(phi1)[2] / ARCSEC.factor
         found = 2.0 * np.abs(np.fft.rfft(lag)) / count
-        hz = np.fft.rfftfreq(count, motion.lasts / count)
+        hz = np.arange(len(found)) / motion.lasts
         kept = slice(1, count // 4)
         natural = float(self.pair.frequency(self.pair.places).mean()) / _TURN
         teeth = self.result.pair.teeth[0] * self.machine.period / _TURN / motion.lasts

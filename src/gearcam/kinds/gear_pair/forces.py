@@ -203,7 +203,7 @@ class PairUnderLoad:
         """
         even = np.linspace(0.0, self.travel, self.result.design.forces.steps + 1)
         back = self._given(even) < 0.0
-        knots = self.knots(back=back.any(), forth=not back.all())
+        knots = self.knots(back=bool(back.any()), forth=not back.all())
         x = np.unique(np.concatenate([even, knots, np.nextafter(knots, -np.inf)]))
         return np.union1d(x, self._extremes(with_both_sides(x, knots)))
 
