@@ -96,6 +96,7 @@ UNDERCUT: dict[str, list[list[int]]] = {
     "nail_machine_two_phase": [[], [15, 17, 18]],
     "nail_machine_three_phase": [[], [15, 16, 17, 18]],
     "loaded_nail_machine": [[], [15, 17, 18]],
+    "rattling_pair": [[], [15, 17, 18]],
 }
 """Undercut teeth of both wheels."""
 

@@ -22,13 +22,16 @@ OTHER_WORDS = {
     "concave": "at least",  # concave radii below this are reported
     "tool-too-large": "at least",  # diameter of the tool at hand: the largest tool is compared
     "jamming": "at most",  # pressure angle that jams
+    "resonance": "about",  # how near two frequencies may be
 }
 """Relations where the text of the key does not begin with least or largest."""
 
 WITHOUT_KEYS = {
     "coarse-rows": "at most",
+    "energy": "at most",
     "guide-distance": "at least",
     "interference": "at most",
+    "irregularity": "at most",
     "jams": "at least",
     "lift-error": "at most",
     "loose-turret": "at least",
