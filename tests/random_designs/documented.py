@@ -114,7 +114,8 @@ def value(d: Draw, key: str, node: Mapping[str, Any]) -> Any:
     node : mapping
         The schema of the key.
     """
-    node = node["anyOf"][0] if "anyOf" in node else node
+    while "anyOf" in node:
+        node = node["anyOf"][0]
     if "const" in node:
         return node["const"]
     if "enum" in node:

@@ -38,7 +38,7 @@ def moved(d: Draw, made: dict[str, Any], torque: float, rpm: float, opened: bool
     motor: dict[str, Any] = {"type": kind, **_torque(d, kind, torque, rpm)}
     runs = {"none": ("coast",), "spring": ("start", "turns"), "speed": ("regime",)}
     run = d.pick(runs.get(kind, ("start", "turns") if opened else ("regime", "start", "turns")))
-    if kind == "constant" and run == "regime" and d.chance(0.9):
+    if kind == "constant" and run == "regime":
         del motor["torque_nm"]
     dynamics: dict[str, Any] = {"run": run, "steps": d.whole(12, 100)}
     if run != "regime":
