@@ -9,9 +9,14 @@ import numpy as np
 
 import gearcam
 from cases import NAIL
+from gearcam.dynamics.follower_motion import settle
+from gearcam.kinds.cam.moving import MovingCam
+from gearcam.kinds.gear_pair.dynamics import motion_of
 from gearcam.kinds.gear_pair.elastic_pair import ElasticPair
 from gearcam.kinds.gear_pair.forces import PairUnderLoad
+from gearcam.kinds.mechanism.dynamics import study_dynamics
 from gearcam.kinds.mechanism.forces import JointForces
+from gearcam.results.study import silent
 from measuring import Result, measure, show, table
 
 LOAD = {"load": [{"torque_nm": 2365.275}], "stress": {"phases": 360}}
@@ -53,6 +58,38 @@ def of_machines() -> list[Result]:
     q = np.linspace(*joints.work.linkage.span, 361)[:-1]
     made = measure("360 places", lambda: joints.at(q), 15)
     return [_target("(zi) Forces in the joints of the press with friction, 360 places", 0.05, made)]
+
+
+def of_dynamics() -> list[Result]:
+    """(zj) The regime of the nail machine; (zk) three turns of elastic teeth; (zl) a cam's turn."""
+    folder = NAIL.parent
+    design = gearcam.load(folder / "nail_machine_flywheel.toml")
+    machine = gearcam.build(design.with_({"motor.flywheel_kg_m2": 0}))
+    _ = machine.linkage
+    pair = gearcam.build(gearcam.load(folder / "rattling_pair.toml"))
+    elastic: Any = motion_of(pair, silent)
+    start = elastic.pair.resting(0.0, float(elastic.rigid.speed(np.zeros(1))[0]))
+    settings = {"knots": elastic.machine.knots, "rtol": 1e-6}
+    end = 3.0 * elastic.machine.period
+    cam = MovingCam(gearcam.build(gearcam.load(folder / "elastic_valve_train.toml")))
+    follower, begin = cam.follower, cam.turn.start[1][:-2]
+    return [
+        _target(
+            "(zj) The regime of the nail machine in motion",
+            0.5,
+            measure("machine and regime", lambda: study_dynamics(machine, silent), 5),
+        ),
+        _target(
+            "(zk) Three turns of a pair with elastic teeth",
+            0.9,
+            measure("three turns", lambda: elastic.pair.run(start, end, **settings), 5),
+        ),
+        _target(
+            "(zl) A turn of an elastic follower",
+            0.2,
+            measure("a turn", lambda: settle(follower, begin, turns=1), 5),
+        ),
+    ]
 
 
 def _target(title: str, most: float, made: Any) -> Result:

@@ -65,6 +65,7 @@ def main() -> int:
         linkage_cases.of_linkages,
         load_cases.of_loads,
         load_cases.of_machines,
+        load_cases.of_dynamics,
         sweep_cases.of_sweeps,
         design_cases.of_cams,
         before_cases.against_before,

@@ -49,15 +49,23 @@ class Smooth(ShortRepr):
         Values.
     period : float or None
         After which it repeats; the last place is then less than a period from the first.
+    positive : bool
+        Whether it stays above 0, as its samples do: its logarithm is the cubic.
     """
 
     places: Array
     samples: Array
     period: float | None
+    positive: bool = False
     _spline: Any = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "_spline", _cubic(self.places, self.samples, self.period))
+        object.__setattr__(self, "_spline", self._through(slice(None)))
+
+    def _through(self, kept: slice) -> Any:
+        """Return the cubic through some of the samples."""
+        samples = np.log(self.samples) if self.positive else self.samples
+        return _cubic(self.places[kept], samples[kept], self.period)
 
     @property
     def knots(self) -> Array:
@@ -72,10 +80,17 @@ class Smooth(ShortRepr):
         x : (n,) array
             Places.
         order : int
-            Of the derivative, 0 for the function.
+            Of the derivative, 0 for the function; of a positive one 1 at most.
         """
         x = np.asarray(x, dtype=float)
-        return np.asarray(self._spline(x, order), dtype=float)
+        return self._values(self._spline, x, order)
+
+    def _values(self, spline: Any, x: Array, order: int = 0) -> Array:
+        found = np.asarray(spline(x, order), dtype=float)
+        if not self.positive:
+            return found
+        value = np.exp(np.asarray(spline(x), dtype=float))
+        return value * found if order else value
 
     @property
     def error(self) -> float:
@@ -83,9 +98,10 @@ class Smooth(ShortRepr):
 
         That through all has less: a sixteenth where the function is smooth, half at a corner.
         """
-        coarse = _cubic(self.places[::2], self.samples[::2], self.period)
+        coarse = self._through(slice(None, None, 2))
         inner = slice(1, None, 2) if self.period or len(self.places) % 2 else slice(1, -1, 2)
-        return float(np.abs(coarse(self.places[inner]) - self.samples[inner]).max())
+        found = self._values(coarse, self.places[inner])
+        return float(np.abs(found - self.samples[inner]).max())
 
 
 def _cubic(places: Array, samples: Array, period: float | None) -> Any:

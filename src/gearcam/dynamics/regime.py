@@ -142,8 +142,27 @@ def even_torque(run: RigidRun, mean: float) -> RigidMotion:
     """
     even = RigidMotion(machine=run.machine, motor=None, knots=run.machine.knots, even=mean)
     torque = (even.works[1] + even.works[2]) / run.machine.period
+    roughly = cache(lambda omega: _repeated(replace(run, rtol=_COARSE), omega, torque))
+    exactly = cache(lambda omega: _repeated(run, omega, torque))
 
-    def turn(omega: float, size: float) -> RigidMotion:
+    def off(repeated: Callable[[float], RigidMotion]) -> Callable[[float], float]:
+        def found(omega: float) -> float:
+            try:
+                return repeated(omega).mean_speed - mean
+            except InfeasibleError:  # it stops: too slow
+                return -mean
+
+        return found
+
+    near = _root(off(roughly), *_widened(off(roughly), mean, 0.02), _COARSE)
+    return exactly(_root(off(exactly), *_widened(off(exactly), near, _NEAR)))
+
+
+def _repeated(run: RigidRun, omega: float, torque: float) -> RigidMotion:
+    """Return a turn from a speed, rad/s, under the even torque, near another, that repeats it."""
+
+    @cache
+    def turn(size: float) -> RigidMotion:
         motion = replace(run, motor=ConstantMotor(size)).from_speed(omega)
         if motion.stopped is not None:
             what = "the machine stops within a turn at this mean speed"
@@ -152,18 +171,12 @@ def even_torque(run: RigidRun, mean: float) -> RigidMotion:
             )
         return motion
 
-    def repeated(omega: float) -> RigidMotion:
-        def gained(size: float) -> float:
-            return turn(omega, size).gained
+    def gained(size: float) -> float:
+        return turn(size).gained
 
-        if abs(gained(torque)) <= 1e-12 * run.energy(0.0, omega):  # nothing depends on the speed
-            return turn(omega, torque)
-        return turn(omega, _root(gained, *_widened(gained, torque, 1e-2)))
-
-    def off(omega: float) -> float:
-        return repeated(omega).mean_speed - mean
-
-    return repeated(_root(off, *_widened(off, mean, 0.1)))
+    if abs(gained(torque)) <= run.rtol * run.energy(0.0, omega):  # nothing depends on the speed
+        return turn(torque)
+    return turn(_root(gained, *_widened(gained, torque, 1e-2)))
 
 
 def flywheel(

@@ -72,6 +72,49 @@ def _demand_elastic(design: Any) -> None:
         raise MissingExtraError("stiffness by finite elements", "stress")
 
 
+def motion_of(result: GearPairResult, progress: Progress) -> PairRun:
+    """Return a pair with the motor and the run of its design.
+
+    Parameters
+    ----------
+    result : GearPairResult
+        The pair.
+    progress : Progress
+        Called with what is computed, the number done and their total.
+
+    Returns
+    -------
+    PairRun
+
+    Raises
+    ------
+    DesignError
+        If a load does not fit.
+    InfeasibleError
+        If the wheels are impossible, or friction locks the pair.
+    """
+    design = result.design
+    progress("machine", 0, 2)
+    under, inertia = PairUnderLoad(result), inertias(result)
+    _ = under.sides  # timed separately
+    with result.stage("machine"):
+        machine = machine_of(under, inertia, usual_speed(design.motor, design.drive.speed))
+    settings: dict[str, Any] = {
+        "machine": machine,
+        "design": design,
+        "speed": design.drive.speed,
+        "place": angle_text,
+        "axis": DRIVER,
+        "symbol": "phi1",
+        "result": result,
+    }
+    if design.dynamics.elastic:
+        from gearcam.kinds.gear_pair.elastic_motion import ElasticRun
+
+        return ElasticRun(**settings, progress=progress)
+    return PairRun(**settings)
+
+
 def study_dynamics(result: GearPairResult, progress: Progress) -> StudyResult:
     """Return the study of the motion of a pair.
 
@@ -94,27 +137,7 @@ def study_dynamics(result: GearPairResult, progress: Progress) -> StudyResult:
     InfeasibleError
         If the wheels are impossible, the pair has no regime, or friction locks it.
     """
-    design = result.design
-    progress("machine", 0, 2)
-    under, inertia = PairUnderLoad(result), inertias(result)
-    _ = under.sides  # timed separately
-    with result.stage("machine"):
-        machine = machine_of(under, inertia, usual_speed(design.motor, design.drive.speed))
-    settings: dict[str, Any] = {
-        "machine": machine,
-        "design": design,
-        "speed": design.drive.speed,
-        "place": angle_text,
-        "axis": DRIVER,
-        "symbol": "phi1",
-        "result": result,
-    }
-    if design.dynamics.elastic:
-        from gearcam.kinds.gear_pair.elastic_motion import ElasticRun
-
-        run: PairRun = ElasticRun(**settings, progress=progress)
-    else:
-        run = PairRun(**settings)
+    run = motion_of(result, progress)
     progress("motion", 1, 2)
     with result.stage("motion"):
         columns = run.columns()

@@ -225,7 +225,7 @@ class ElasticRun(PairRun):
             samples = mesh_stiffness(pairs, phi1, given, width, self._nominal)
         else:
             samples = self._by_elements(phi1)
-        return Smooth(phi1, samples, travel if self.machine.closed else None)
+        return Smooth(phi1, samples, travel if self.machine.closed else None, positive=True)
 
     def _by_elements(self, phi1: Array) -> Array:
         """Return the stiffness by finite elements at driver angles, (n,), N m/rad."""
@@ -257,6 +257,7 @@ class ElasticRun(PairRun):
             rubs = [row[0] + one for one in row[2:4]] if machine.rubs else []
             x = np.mod(phi1, machine.period) if machine.closed else phi1
             mesh = [one(x, order) for one in (stiff, apart) for order in (0, 1)]
+            mesh[2] = np.maximum(mesh[2], 0.0)
             return np.stack([*row[:2], *mesh, *rubs])
 
         def load(phi1: float, w2: float) -> float:
