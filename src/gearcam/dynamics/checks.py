@@ -126,8 +126,8 @@ def contact_lost(teeth: VibratingTeeth, limit: float) -> Iterator[Remark]:  # no
     worst = max(hits, key=lambda one: one.impact)
     times = f"{len(hits)} times a turn" if len(hits) > 1 else "once a turn"
     message = (
-        f"Teeth part {times}, and hit: less backlash, an even load on the driven wheel, or less "
-        "inertia keeps them together."
+        f"Teeth part {times}, cross the backlash and hit: the load there is less than the torque "
+        "by which the driven wheel's inertia runs ahead."
     )
     yield Remark(message, teeth.place(worst.high), worst.impact, unit="rad/s")
 

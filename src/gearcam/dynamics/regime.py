@@ -35,6 +35,12 @@ _DOWN: Final = 0.85
 _LEAST: Final = 0.02
 """Least speed at which a turn is tried, over the highest."""
 
+_TRIED: Final = 8
+"""Number of flywheels tried that carry a machine through its load, each four times the last."""
+
+_DOUBLINGS: Final = 24
+"""Number of times a flywheel is doubled."""
+
 _SHARES: Final = 12
 """Halvings of the share of the load that has a regime."""
 
@@ -114,11 +120,26 @@ def _too_weak(coarse: RigidRun) -> InfeasibleError:
         gain = partial(_gain, replace(coarse, machine=machine))
         if _bracket(gain, coarse.scale) is not None:
             share += step
-    what = "the motor is too weak: the machine stops within a turn, from any speed"
+    what = "the motor does not turn this load: the machine stops within a turn, from any speed"
     nearest = f"a load of up to {formatted(shortened(share, -1e-2 * share, 2))} times this one runs"
     if share <= 0.0:
         nearest = "a stronger motor"
+    heavy = _carrying(coarse)
+    if heavy:
+        nearest += f"; with a flywheel of {formatted(heavy)} kg m2 all of it does"
     return InfeasibleError(what, where="motor", nearest=nearest)
+
+
+def _carrying(coarse: RigidRun) -> float:
+    """Return a flywheel, kg m2, that carries a machine through its load; 0 if none does."""
+    own = coarse.machine.inertia(coarse.machine.rows.at(coarse.machine.knots))
+    size = float(np.mean(own))
+    for _ in range(_TRIED):
+        size = shortened(4.0 * size, 0.1 * size, 2)
+        gain = partial(_gain, replace(coarse, machine=coarse.machine.with_flywheel(size)))
+        if _bracket(gain, coarse.scale) is not None:
+            return size
+    return 0.0
 
 
 def even_torque(run: RigidRun, mean: float) -> RigidMotion:
@@ -179,8 +200,16 @@ def _repeated(run: RigidRun, omega: float, torque: float) -> RigidMotion:
     return turn(_root(gained, *_widened(gained, torque, 1e-2)))
 
 
+def _or_none(motion_with: Callable[[float], RigidMotion], inertia: float) -> RigidMotion | None:
+    """Return the regime with a flywheel, kg m2; None if there is none."""
+    try:
+        return motion_with(inertia)
+    except InfeasibleError:
+        return None
+
+
 def flywheel(
-    motion_with: Callable[[float], RigidMotion], wanted: float
+    motion_with: Callable[[float], RigidMotion], wanted: float, inertia: float = 1.0
 ) -> tuple[float, RigidMotion]:
     """Return the least flywheel that keeps an irregularity, and the motion with it.
 
@@ -190,6 +219,8 @@ def flywheel(
         ``motion_with(inertia)`` returns the regime with a flywheel, kg m2.
     wanted : float
         The irregularity.
+    inertia : float, kg m2
+        Of the machine; the first flywheel that is tried if it does not run without one.
 
     Returns
     -------
@@ -197,23 +228,38 @@ def flywheel(
         0 if none is needed.
     RigidMotion
 
+    Raises
+    ------
+    InfeasibleError
+        If the motor is too weak with any flywheel.
+
     Notes
     -----
     The first guess is (5.39), ``J = J0*(delta0/wanted)``; the irregularity falls as the flywheel
     grows.
     """
-    without = motion_with(0.0)
-    if without.irregularity <= wanted:
+    without = _or_none(motion_with, 0.0)
+    if without is not None and without.irregularity <= wanted:
         return 0.0, without
-    inertia = without.machine.inertia(without.rows(without.knots))
-    high = float(np.mean(inertia)) * (without.irregularity / wanted)
+    if without is None:  # without a flywheel it does not run through the load
+        high = inertia
+    else:
+        own = without.machine.inertia(without.rows(without.knots))
+        high = float(np.mean(own)) * (without.irregularity / wanted)
 
     @cache
     def over(size: float) -> float:
-        return motion_with(size).irregularity - wanted
+        motion = _or_none(motion_with, size)
+        return 2.0 if motion is None else motion.irregularity - wanted
 
     low = 0.0
-    while over(high) > 0.0:
+    for _ in range(_DOUBLINGS):
+        if over(high) <= 0.0:
+            break
         low, high = high, 2.0 * high
+    else:
+        motion_with(high)  # which may say why
+        what = f"no flywheel up to {formatted(high, 3)} kg m2 keeps this irregularity"
+        raise InfeasibleError(what, where="motor.irregularity", nearest="a larger one")
     found = _root(over, low, high)
     return found, motion_with(found)

@@ -45,8 +45,8 @@ class DynamicsSpec(ShortRepr):
         ge=1,
         le=100_000,
         example=10,
-        doc="number of turns of a run that is no regime; 3 by default, of an open machine its "
-        "travel",
+        doc="number of turns of a run that is no regime; 3 by default, coasting 100, of an open "
+        "machine its travel",
     )
     steps: int = param(
         COUNT,

@@ -48,6 +48,9 @@ _SAME: Final = 1e-9
 _LIGHT: Final = 1e-9
 """Moment of inertia, over the largest, up to which it is none."""
 
+_UNTIL_REST: Final = 100
+"""Largest number of turns of a machine that coasts."""
+
 _ROWS: Final = 100_000
 """Largest number of rows of the table."""
 
@@ -208,7 +211,7 @@ class MachineRun(ShortRepr):
     def _found(self) -> tuple[float, RigidMotion]:
         given = self.design.motor.flywheel
         if given == "solve":
-            return flywheel(self._moving, self.design.motor.irregularity)
+            return flywheel(self._moving, self.design.motor.irregularity, self._lightest[2] or 1.0)
         return given, self._moving(given)
 
     @property
@@ -242,7 +245,7 @@ class MachineRun(ShortRepr):
                     value=found / RPM.factor,
                     limit=end / RPM.factor,
                     unit="rpm",
-                    nearest="rows up to the speeds that are reached",
+                    nearest="rows up to the speeds that are reached, or down to a torque of 0",
                 )
         return motion
 
@@ -250,7 +253,8 @@ class MachineRun(ShortRepr):
         """Return the motion with a flywheel, kg m2."""
         self._demand_turns()
         machine, spec = self.machine.with_flywheel(inertia), self.spec
-        turns = spec.turns or (3 if machine.closed else 1)
+        usual = _UNTIL_REST if spec.run == COAST else 3
+        turns = spec.turns or (usual if machine.closed else 1)
         if self.motor is None:
             return RigidMotion(
                 machine=machine, motor=None, knots=machine.knots, even=self.speed or 0.0
@@ -387,9 +391,12 @@ class MachineRun(ShortRepr):
             if motion.motor is None
             else {
                 "mean": _rpm(motion.mean_speed, "mean speed", "half of least and largest"),
+                "over_time": _rpm(_over_time(motion), "mean speed over time", ""),
                 "min": _rpm(slow, "least speed", self.place(slow_at)),
                 "max": _rpm(fast, "largest speed", self.place(fast_at)),
-            },
+            }
+            if steady
+            else self._speeds(),
             "irregularity": Fact(
                 motion.irregularity,
                 "irregularity, (max - min)/mean",
@@ -428,6 +435,19 @@ class MachineRun(ShortRepr):
             "gained_j": motion.gained,
             "stopped_deg": None if motion.stopped is None else math.degrees(motion.stopped),
             "energy_residue": Fact(motion.residue, "works and energy balance to", unit=""),
+        }
+
+    def _speeds(self) -> Tree:
+        """Return the speeds of a run that is no regime."""
+        motion, ends = self.motion, np.array(self.motion.ends)
+        first, last = motion.speed(ends).tolist()
+        fast_at, fast = motion.speeds[1]
+        if motion.stopped is not None:
+            last = 0.0
+        return {
+            "first": _rpm(0.0 if self.spec.run == START else first, "speed at the start", ""),
+            "last": _rpm(last, "speed at the end", self.place(float(ends[1]))),
+            "max": _rpm(fast, "largest speed", self.place(fast_at)),
         }
 
     def _flywheel(self) -> Fact | None:
@@ -481,6 +501,12 @@ class MachineRun(ShortRepr):
         marks = knot_marks(np.degrees(self.machine.knots), float(x[0]), float(x[-1]))
         made = tuple(Line(label=label, x=x, y=values) for label, values in lines.items())
         return Chart(title=title, x=self.axis, y=y, lines=made, marks=marks)
+
+
+def _over_time(motion: MachineMotion) -> float:
+    """Return the mean speed over the time of a motion, rad/s."""
+    low, high = motion.ends
+    return (high - low) / motion.lasts
 
 
 def _rpm(omega: float, label: str, place: str) -> Fact:

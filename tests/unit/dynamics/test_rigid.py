@@ -140,7 +140,7 @@ def test_the_regime_is_the_fixed_point_of_the_turn_in_time():
 def test_a_weak_motor_is_refused_with_a_load_that_has_a_regime():
     machine, motor = uneven(4000.0), LinearMotor(600.0, 30.0)
     run = RigidRun(machine=machine, motor=motor, scale=30.0)
-    with pytest.raises(InfeasibleError, match="too weak") as caught:
+    with pytest.raises(InfeasibleError, match="does not turn this load") as caught:
         regime(run)
     share = float(caught.value.nearest.split("up to ")[1].split()[0])
     assert 0.0 < share < 1.0
@@ -224,3 +224,18 @@ def test_a_spring_runs_down_and_leaves_its_energy():
     motion = RigidRun(machine=machine, motor=SpringMotor(8.0, 0.5), scale=20.0).from_rest(5.0)
     # unwound after 16 rad: 64 J
     assert motion.speed(np.array([16.0, 30.0])) == pytest.approx([16.0, 16.0], rel=1e-7)
+
+
+def test_a_machine_that_only_a_flywheel_carries_through_its_load_gets_the_least_one():
+    machine, motor = uneven(1800.0), LinearMotor(600.0, 30.0)
+
+    def with_(inertia):
+        return regime(RigidRun(machine=machine.with_flywheel(inertia), motor=motor, scale=30.0))
+
+    with pytest.raises(InfeasibleError, match="does not turn this load") as caught:
+        with_(0.0)
+    told = float(caught.value.nearest.split("flywheel of ")[1].split()[0])
+    assert with_(told).residue < 1e-7
+    least, motion = flywheel(with_, 0.2)
+    assert motion.irregularity == pytest.approx(0.2, rel=1e-8)
+    assert with_(0.98 * least).irregularity > 0.2

@@ -81,6 +81,9 @@ def study_dynamics(result: CamResult, progress: Progress) -> StudyResult:
         findings = ()
         if moving.elastic:
             findings = run_checks(MOVING, _checked(moving, moment), result.design.limits)
+        else:  # of a rigid follower the forces tell where it leaves its cam
+            found = result.study("forces").study_findings
+            findings = tuple(one for one in found if one.code == "lift-off")
         facts = _facts(moving, moment)
     return StudyResult(
         result=result,
@@ -232,7 +235,7 @@ def _facts(moving: MovingCam, moment: Moment) -> Tree:
         "natural_frequency_hz": Fact(
             hertz,
             "natural frequencies",
-            text=" and ".join(map(formatted, hertz)),
+            text=" and ".join(map(formatted, hertz)) + " Hz",
             shown=True,
         ),
         f"contact_stiffness_{bend}": None
@@ -276,7 +279,8 @@ def _jumps(moving: MovingCam) -> Tree | None:
     found: Tree = {}
     release, factor = moving.loads.release, moving.result.design.drive.quantity.factor
     if release is not None:
-        found["rigid"] = Fact(release[0] / factor, "a rigid follower jumps at", unit="rpm")
+        label = "a rigid follower jumps at"
+        found["rigid"] = Fact(release[0] / factor, label, unit="rpm", shown=not moving.elastic)
     if moving.elastic and moving.jump is not None:
         text = "" if moving.jump else "all low speeds"
         label, unit = "the elastic follower jumps at", "rpm" if moving.jump else ""
@@ -300,7 +304,7 @@ def _charts(moving: MovingCam, moment: Moment) -> dict[str, Chart]:
             ),
         ),
         "lag": chart(
-            title="ElasticFollower's place less the lift",
+            title="Follower's place less the lift",
             y=f"difference, {unit}",
             lines=tuple(
                 Line(label=f"mass {k}", x=x, y=scale * (one.s - moment.rigid.s))

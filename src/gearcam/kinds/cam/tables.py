@@ -59,7 +59,7 @@ STUDIES: Final = studies_of(
     Study(
         name="dynamics",
         key="dynamics",
-        doc="Compute the motion of an elastic follower, with flights; write DIR/NAME/dynamics.csv.",
+        doc="Compute a machine, teeth or a follower in motion; write DIR/NAME/dynamics.csv.",
         done="computed",
         table="dynamics",
         options={"stiffness_n_mm": "train-stiffness", "stiffness_nm_rad": "swing-stiffness"},

@@ -89,7 +89,7 @@ STUDIES: Final = studies_of(
     Study(
         name="dynamics",
         key="dynamics",
-        doc="Compute speeds, torques and tooth forces in motion; write DIR/NAME/dynamics.csv.",
+        doc="Compute a machine, teeth or a follower in motion; write DIR/NAME/dynamics.csv.",
         done="computed",
         table="dynamics",
         compute=deferred(f"{_HERE}.dynamics:study_dynamics"),

@@ -17,6 +17,7 @@ from gearcam.base.numerals import formatted
 from gearcam.base.quantities import ARCSEC, RPM
 from gearcam.dynamics.checks import VibratingTeeth
 from gearcam.dynamics.mesh_stiffness import Smooth, backlash_angle, mesh_stiffness
+from gearcam.dynamics.settings import COAST as COASTING
 from gearcam.dynamics.settings import VIBRATION
 from gearcam.dynamics.stiff import APART, COAST, StiffPair
 from gearcam.dynamics.tabled import Tabled
@@ -283,9 +284,10 @@ class ElasticRun(PairRun):
     def _runs(self) -> tuple[StiffRun, StiffRun]:
         """The run, and the same with a tenth of the tolerance."""
         rigid, spec = self.rigid, self._settings
-        low, high = float(rigid.knots[0]), float(rigid.knots[-1])
+        low, high = rigid.ends
         if self.machine.closed:
-            high = low + self.machine.period * (spec.turns or 3)
+            usual = math.ceil((high - low) / self.machine.period) if spec.run == COASTING else 3
+            high = low + self.machine.period * (spec.turns or usual)
         start = self.pair.resting(low, float(rigid.speed(np.array([low]))[0]))
         settings: dict[str, Any] = {
             "knots": self.machine.knots,
@@ -300,11 +302,14 @@ class ElasticRun(PairRun):
             done = round(100.0 * (phi1 - low) / self.machine.period)
             self.progress(f"hundredths of turns{told}", done, turns)
 
-        first, second = (
-            self.pair.run(start, high, rtol=rtol, passed=passed, **settings)
-            for rtol in (spec.tolerance, 0.1 * spec.tolerance)
-        )
-        return first, second
+        runs = []
+        for rtol in (spec.tolerance, 0.1 * spec.tolerance):
+            run = self.pair.run(start, high, rtol=rtol, passed=passed, **settings)
+            if run.stalled:  # its last turn was not kept
+                settings["keep"] = max(low, run.motion.place - self.machine.period)
+                run = self.pair.run(start, high, rtol=rtol, passed=passed, **settings)
+            runs.append(run)
+        return runs[0], runs[1]
 
     @property
     def motion(self) -> ElasticMotion:
@@ -386,10 +391,10 @@ class ElasticRun(PairRun):
         bent = values["lag"] / ARCSEC.factor
         arcs = self.motion.lost_contact
         source = "given" if self._settings.stiffness is not None else "by finite elements"
-        stiffness = self.stiffness.samples
+        stiffness = self.pair.table.at(self.pair.places)[2]
         mean, error = float(stiffness.mean()), self.stiffness.error
         jumps = f", jumps by {formatted(error, 2)}" if error > _JUMPS * mean else ""
-        lost = f"{len(arcs)} arcs of {formatted(math.degrees(_sum(arcs)), 4)} deg"
+        lost = f"{len(arcs)} arcs, {formatted(math.degrees(_sum(arcs)), 4)} deg together"
         return super().facts(columns) | {
             "run": Fact(self.spec.run, "motion", text=self._words, shown=True),
             "mesh_torque_nm": Fact(
@@ -442,6 +447,8 @@ class ElasticRun(PairRun):
         turns = self.spec.turns or 3
         if not self.machine.closed:
             return super()._words
+        if self.spec.run == COASTING:
+            return f"elastic teeth, the last turn; {super()._words}"
         return f"elastic teeth, the last of {turns} turns; {super()._words}"
 
     def charts(self, columns: Any) -> dict[str, Chart]:

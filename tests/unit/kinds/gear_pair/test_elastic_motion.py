@@ -157,3 +157,12 @@ def test_units_of_the_lag():
     found = slow("circular", 0.0)
     most = found.columns["lag_rad"].max() / ARCSEC.factor
     assert found.facts["dynamics.lag_arcsec.max"] == pytest.approx(most, rel=0.02)
+
+
+def test_elastic_teeth_that_coast_stop_where_rigid_ones_do():
+    own = {"dynamics.run": "coast", "drive.speed_rpm": 200}
+    elastic = gc.build(design("ellipse", **own)).study("dynamics")
+    rigid = gc.build(design("ellipse", **own, **{"dynamics.rigid": True})).study("dynamics")
+    stop = rigid.facts["dynamics.stopped_deg"]
+    assert elastic.facts["dynamics.stopped_deg"] % 360.0 == pytest.approx(stop % 360.0, abs=1.0)
+    assert elastic.facts["dynamics.speed_rpm.last"] == 0.0
