@@ -41,6 +41,9 @@ _LEAST_TOLERANCE: Final = 1e-12
 _HIGHEST: Final = 4
 """Highest degree of a polynomial in the speed that a load may be."""
 
+_NOTHING: Final = 1e-9
+"""Moment of inertia over the largest that is 0."""
+
 _SAME: Final = 1e-9
 """Difference of loads over the largest that is rounding."""
 
@@ -88,6 +91,11 @@ def _problem(motor: MotorSpec, run: str, speed: float | None, key: str) -> Probl
         what = "a motor of an even torque has no regime of its own"
         near = f"left out, with {key}: then it is the mean of the load"
         return Problem(what, key="motor.torque_nm", allowed=near)
+    made = motor_of(motor)
+    if run == REGIME and motor.type == "table" and made is not None and not made.settles:
+        what = "such a motor has no regime of its own: its torque does not fall"
+        near = "less at the highest speed than at all others"
+        return Problem(what, key="motor.torque_nm", allowed=near)
     if run in (START, TURNS) and motor.type == "constant" and motor.torque is None:
         return Problem(
             missing + "the motor has no torque", key="motor.torque_nm", allowed="a torque"
@@ -98,6 +106,9 @@ def _problem(motor: MotorSpec, run: str, speed: float | None, key: str) -> Probl
     evenly = motor.turns_evenly or (motor.type == "constant" and run == REGIME)
     if speed is None and (evenly or run in (TURNS, COAST)):
         return Problem(missing + "the speed of the driver", key=key, allowed="a speed above 0")
+    if motor.irregularity is not None and run != REGIME:
+        what = f'is that of a regime, not of run = "{run}"'
+        return Problem(what, key="motor.irregularity", allowed='left out, or run = "regime"')
     if motor.flywheel == "solve" and run != REGIME:
         what = f'"solve": a flywheel is found for a regime, not for run = "{run}"'
         return Problem(what, key="motor.flywheel_kg_m2", allowed='a number, or run = "regime"')
@@ -204,7 +215,9 @@ class MachineRun(ShortRepr):
     def _found(self) -> tuple[float, RigidMotion]:
         given = self.design.motor.flywheel
         if given == "solve":
-            return flywheel(self._with, self.design.motor.irregularity)
+            (_, low), (_, high) = self.machine.inertia_ends
+            usual = 0.5 * (low + high) or 1.0
+            return flywheel(self._with, self.design.motor.irregularity, usual)
         return given, self._with(given)
 
     @property
@@ -247,13 +260,16 @@ class MachineRun(ShortRepr):
         self._demand_turns()
         machine, spec = self.machine.with_flywheel(inertia), self.spec
         turns = spec.turns or (3 if machine.closed else 1)
-        if not machine.inertia(machine.rows(float(machine.knots[0]))) > 0.0:
-            what = "nothing of the machine has inertia"
-            raise InfeasibleError(what, where="dynamics", nearest="a flywheel, or masses")
         if self.motor is None:
-            return RigidMotion(
-                machine=machine, motor=None, knots=machine.knots, even=self.speed or 0.0
-            )
+            knots = machine.knots_over(turns) if spec.run == TURNS else machine.knots
+            return RigidMotion(machine=machine, motor=None, knots=knots, even=self.speed or 0.0)
+        (least_at, least), (_, largest) = machine.inertia_ends
+        if least <= _NOTHING * largest:
+            what = "nothing of the machine has inertia"
+            if largest > 0.0:
+                what = "nothing that has inertia moves here: the speed would be infinite"
+            near = "a flywheel, or inertia of the driver"
+            raise InfeasibleError(what, where=self.place(least_at), nearest=near)
         run = RigidRun(
             machine=machine,
             motor=self.motor,
@@ -369,9 +385,7 @@ class MachineRun(ShortRepr):
                 motion.lasts, f"time of a {turn}" if steady else "time", unit="s", shown=True
             ),
             "inertia_kg_m2": Fact(
-                extent(
-                    float(columns["inertia_kg_m2"].min()), float(columns["inertia_kg_m2"].max())
-                ),
+                extent(*(one for _, one in motion.machine.inertia_ends)),
                 "moment of inertia at the driver",
                 unit="kg m2",
                 shown=True,

@@ -299,11 +299,15 @@ class ElasticRun(PairRun):
             done = round(100.0 * (phi1 - low) / self.machine.period)
             self.progress(f"hundredths of turns{told}", done, turns)
 
-        first, second = (
-            self.pair.run(start, high, rtol=rtol, passed=passed, **settings)
-            for rtol in (spec.tolerance, 0.1 * spec.tolerance)
-        )
-        return first, second
+        def made(rtol: float) -> StiffRun:
+            run = self.pair.run(start, high, rtol=rtol, passed=passed, **settings)
+            if run.motion.pieces:
+                return run
+            # it stalled before what is kept
+            kept: dict[str, Any] = {"keep": max(low, run.motion.place - self.machine.period)}
+            return self.pair.run(start, high, rtol=rtol, **settings | kept)
+
+        return made(spec.tolerance), made(0.1 * spec.tolerance)
 
     @cached_property
     def motion(self) -> ElasticMotion:

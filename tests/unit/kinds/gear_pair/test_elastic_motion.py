@@ -132,6 +132,7 @@ def test_a_resonance_is_told_at_the_speed_that_makes_it_and_not_far_from_it():
             "begin at a speed",
         ),
         ({"dynamics.damping_ratio": 1.0}, "out of range"),
+        ({"steps.count": 2}, "stepped"),
     ],
 )
 def test_what_elastic_teeth_cannot_do_is_refused(changes, words):
@@ -148,3 +149,15 @@ def test_units_of_the_lag():
     found = slow("circular", 0.0)
     most = found.columns["lag_rad"].max() / ARCSEC.factor
     assert found.facts["dynamics.lag_arcsec.max"] == pytest.approx(most, rel=0.02)
+
+
+def test_a_pair_that_stops_in_an_early_turn_is_stated_up_to_there():
+    own = {**ELASTIC, "run": "coast", "turns": 3}
+    found = gc.build(design("circular", **{"dynamics": own, "drive.speed_rpm": 60})).study(
+        "dynamics"
+    )
+    ratio = found.result.law.ratio(np.zeros(1))[0]
+    energy = 0.5 * (0.02 + 0.03 * ratio**2) * (2.0 * np.pi) ** 2
+    stopped = np.radians(found.facts["dynamics.stopped_deg"])
+    assert 40.0 * ratio * stopped == pytest.approx(energy, rel=0.1)  # teeth give a little
+    assert "stalls" in [one.code for one in found.study_findings]
