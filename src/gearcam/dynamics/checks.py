@@ -70,8 +70,8 @@ def irregularity(moving: MovingMachine, limit: float) -> Iterator[Remark]:  # no
 
     Looks at: least and largest speed of the driver in the regime, if motor.irregularity is given.
     """
-    found, wanted = moving.motion.irregularity, moving.wanted
-    if wanted is not None and found > wanted * (1.0 + 1e-9):
+    wanted = moving.wanted
+    if wanted is not None and (found := moving.motion.irregularity) > wanted * (1.0 + 1e-9):
         message = (
             "The speed is more irregular than wanted: a flywheel steadies it, "
             'flywheel_kg_m2 = "solve" finds the least.'

@@ -17,14 +17,22 @@ is what it must be, and ``Q = M2 + J2*i'*omega**2``.
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Self
+from functools import cached_property
+from typing import Any, Final, Self
+
+import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.dynamics.tabled import Tabled
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, snapped
+from gearcam.numeric.piecewise import extremes
+
+_AT_KNOT: Final = 1e-9
+"""Distance from a knot, rad, within which a place is called by it."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -89,6 +97,36 @@ class Machine(ABC, ShortRepr):
     def period(self) -> float:
         """Angle from its first to its last knot, rad: a turn, several turns, or a travel."""
         return float(self.knots[-1] - self.knots[0])
+
+    @cached_property
+    def inertia_ends(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """The least and the largest moment of inertia, each as (angle, kg m2)."""
+
+        def both(phi: Array) -> list[Array]:
+            row, nothing = self.rows.at(phi), np.zeros(phi.shape)
+            return [self.inertia(row) + nothing, self.inertia_slope(row) + nothing]
+
+        places, values = extremes(both, self.rows.edges, cells=True)
+        places = snapped(places, self.knots, _AT_KNOT)
+        low, high = int(values.argmin()), int(values.argmax())
+        return (float(places[low]), float(values[low])), (float(places[high]), float(values[high]))
+
+    def knots_over(self, turns: float, low: float | None = None) -> Array:
+        """Return the knots of some turns, rad; of an open machine those of its travel.
+
+        Parameters
+        ----------
+        turns : float
+            Number of turns.
+        low : float, optional
+            Where they begin, in the first turn; at the first knot by default.
+        """
+        own, every, high = self.knots, self.knots, self.knots[-1]
+        if self.closed:
+            every = np.unique(np.add.outer(self.period * np.arange(math.ceil(turns)), own))
+            high = own[0] + self.period * turns
+        first = own[0] if low is None else low
+        return np.concatenate([[first], every[(every > first) & (every < high)], [high]])
 
     def with_flywheel(self, inertia: float) -> Self:
         """Return the machine with another flywheel, kg m2."""

@@ -31,6 +31,8 @@ class Motor(ABC, ShortRepr):
     """Speed up to which its torque is known, rad/s."""
     scale: float = 0.0
     """A usual speed of the driver, rad/s; 0 if it has none."""
+    bends: tuple[float, ...] = ()
+    """Speeds, rad/s, between which its torque changes little, or only rises or falls."""
 
     @abstractmethod
     def torque(self, phi: Any, omega: Any) -> Any:
@@ -114,6 +116,12 @@ class AsynchronousMotor(Motor):
         """Its synchronous speed, rad/s."""
         return self.synchronous
 
+    @property
+    def bends(self) -> tuple[float, ...]:  # type: ignore[override]
+        """The speeds about its largest torques, that drives and that brakes."""
+        slips = [share * self.slip for share in (-2.0, -1.0, -0.5, 0.5, 1.0, 2.0)]
+        return tuple(self.synchronous * (1.0 - one) for one in slips)
+
     def torque(self, phi: Any, omega: Any) -> Any:  # noqa: ARG002
         """Return its torque; above the synchronous speed it brakes (see `Motor.torque`)."""
         s = 1.0 - omega / self.synchronous
@@ -141,6 +149,11 @@ class TableMotor(Motor):
     def scale(self) -> float:  # type: ignore[override]
         """Its highest speed."""
         return self.speeds[-1]
+
+    @property
+    def bends(self) -> tuple[float, ...]:  # type: ignore[override]
+        """Its speeds."""
+        return self.speeds
 
     @cached_property
     def _cells(self) -> tuple[list[float], list[tuple[float, ...]], Any]:

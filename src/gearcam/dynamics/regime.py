@@ -9,9 +9,9 @@ is given, and the torque is that which keeps it.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache, partial
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -32,14 +32,29 @@ _EXACT: Final = 1e-13
 _DOWN: Final = 0.85
 """Factor of the speeds at which a turn is tried, from above."""
 
+_UP: Final = 1.25
+"""The same where the load drives."""
+
 _LEAST: Final = 0.02
-"""Least speed at which a turn is tried, over the highest."""
+"""Least speed at which a turn is tried, over the usual one."""
+
+_LARGEST: Final = 1e3
+"""Largest one, where the load drives."""
+
+_SAME: Final = 1e-6
+"""Difference of speeds, or energies, over them, up to which a turn is found."""
+
+_CLOSE: Final = 0.05
+"""The same with the coarse tolerance."""
+
+_STOPS: Final = 2.0
+"""Irregularity of a machine whose least speed is 0."""
+
+_HEAVIEST: Final = 1e4
+"""Heaviest flywheel with which a machine is tried that stops without one, over a usual inertia."""
 
 _TRIED: Final = 8
 """Number of flywheels tried that carry a machine through its load, each four times the last."""
-
-_DOUBLINGS: Final = 24
-"""Number of times a flywheel is doubled."""
 
 _SHARES: Final = 12
 """Halvings of the share of the load that has a regime."""
@@ -51,9 +66,9 @@ def _root(
     """Return the root of a function that changes its sign between two places."""
     from scipy.optimize import brentq
 
-    tolerance: Any = exact
-    found = brentq(function, low, high, xtol=exact * high, rtol=tolerance)
-    return float(found)  # type: ignore[arg-type]
+    width = exact * max(abs(low), abs(high))
+    found, _ = brentq(function, low, high, xtol=width, rtol=exact, full_output=True)
+    return float(found)
 
 
 def _widened(function: Callable[[float], float], middle: float, near: float) -> tuple[float, float]:
@@ -72,17 +87,20 @@ def _gain(run: RigidRun, omega: float) -> float:
     return run.speed_after_turn(omega) - omega
 
 
-def _bracket(gain: Callable[[float], float], scale: float) -> tuple[float, float] | None:
+def _bracket(gain: Callable[[float], float], run: RigidRun) -> tuple[float, float] | None:
     """Return speeds at the first angle between which the regime is; None if there is none."""
-    high = scale
+    high, scale, bends = run.scale, run.scale, run.motor.bends
     while gain(high) > 0.0:
-        high *= 1.25
-    low = _DOWN * high
-    while gain(low) <= 0.0:
-        high, low = low, _DOWN * low
+        high = min([_UP * high, *(one for one in bends if one > high)])
+        if high > _LARGEST * scale:
+            return None
+    while True:
+        low = max([_DOWN * high, *(one for one in bends if one < high)])
         if low < _LEAST * scale:
             return None
-    return low, high
+        if gain(low) > 0.0:
+            return low, high
+        high = low
 
 
 def regime(run: RigidRun) -> RigidMotion:
@@ -100,15 +118,21 @@ def regime(run: RigidRun) -> RigidMotion:
     Raises
     ------
     InfeasibleError
-        If the motor is too weak.
+        If the motor is too weak, or too weak a brake for a load that drives.
     """
     coarse = replace(run, rtol=_COARSE)
     roughly, gain = cache(partial(_gain, coarse)), cache(partial(_gain, run))
-    bracket = _bracket(roughly, run.scale)
+    bracket = _bracket(roughly, run)
     if bracket is None:
-        raise _too_weak(coarse)
+        raise _runaway() if roughly(run.scale) > 0.0 else _too_weak(coarse)
     near = _root(roughly, *bracket, _COARSE)
     return run.from_speed(_root(gain, *_widened(gain, near, _NEAR)))
+
+
+def _runaway() -> InfeasibleError:
+    """Return the error for a load that drives more than the motor brakes."""
+    what = "the load drives the machine ever faster: no speed repeats after a turn"
+    return InfeasibleError(what, where="motor", nearest="a motor that brakes more, or less load")
 
 
 def _too_weak(coarse: RigidRun) -> InfeasibleError:
@@ -117,8 +141,8 @@ def _too_weak(coarse: RigidRun) -> InfeasibleError:
     for _ in range(_SHARES):
         step *= 0.5
         machine = replace(coarse.machine, share=share + step)
-        gain = partial(_gain, replace(coarse, machine=machine))
-        if _bracket(gain, coarse.scale) is not None:
+        lighter = replace(coarse, machine=machine)
+        if _bracket(partial(_gain, lighter), lighter) is not None:
             share += step
     what = "the motor does not turn this load: the machine stops within a turn, from any speed"
     nearest = f"a load of up to {formatted(shortened(share, -1e-2 * share, 2))} times this one runs"
@@ -132,12 +156,12 @@ def _too_weak(coarse: RigidRun) -> InfeasibleError:
 
 def _carrying(coarse: RigidRun) -> float:
     """Return a flywheel, kg m2, that carries a machine through its load; 0 if none does."""
-    own = coarse.machine.inertia(coarse.machine.rows.at(coarse.machine.knots))
-    size = float(np.mean(own))
+    (_, low), (_, high) = coarse.machine.inertia_ends
+    size = 0.5 * (low + high)
     for _ in range(_TRIED):
         size = shortened(4.0 * size, 0.1 * size, 2)
-        gain = partial(_gain, replace(coarse, machine=coarse.machine.with_flywheel(size)))
-        if _bracket(gain, coarse.scale) is not None:
+        heavier = replace(coarse, machine=coarse.machine.with_flywheel(size))
+        if _bracket(partial(_gain, heavier), heavier) is not None:
             return size
     return 0.0
 
@@ -160,56 +184,102 @@ def even_torque(run: RigidRun, mean: float) -> RigidMotion:
     ------
     InfeasibleError
         If the machine stops within a turn.
+
+    Notes
+    -----
+    From a given speed the energy gained in a turn rises with the torque, and the mean speed of the
+    turn that gains none rises with the given speed: both roots are bracketed. A motion that stops
+    gains less than nothing, and its mean speed counts as 0.
     """
     even = RigidMotion(machine=run.machine, motor=None, knots=run.machine.knots, even=mean)
     torque = (even.works[1] + even.works[2]) / run.machine.period
-    roughly = cache(lambda omega: _repeated(replace(run, rtol=_COARSE), omega, torque))
-    exactly = cache(lambda omega: _repeated(run, omega, torque))
-
-    def off(repeated: Callable[[float], RigidMotion]) -> Callable[[float], float]:
-        def found(omega: float) -> float:
-            try:
-                return repeated(omega).mean_speed - mean
-            except InfeasibleError:  # it stops: too slow
-                return -mean
-
-        return found
-
-    near = _root(off(roughly), *_widened(off(roughly), mean, 0.02), _COARSE)
-    return exactly(_root(off(exactly), *_widened(off(exactly), near, _NEAR)))
+    coarse = _EvenTorque(run=replace(run, rtol=_COARSE), mean=mean, torque=torque, exact=_COARSE)
+    near = coarse.speed(mean, 1.0 - _DOWN)
+    if abs(coarse.off(near)) <= _CLOSE * mean:
+        fine = _EvenTorque(run=run, mean=mean, torque=torque, exact=_EXACT)
+        omega = fine.speed(near, 10.0 * _COARSE)
+        if abs(fine.off(omega)) <= _SAME * mean:
+            return fine.repeated(omega)
+    what = "the machine stops within a turn at this mean speed"
+    raise InfeasibleError(what, where="drive.speed_rpm", nearest="a flywheel, or more speed")
 
 
-def _repeated(run: RigidRun, omega: float, torque: float) -> RigidMotion:
-    """Return a turn from a speed, rad/s, under the even torque, near another, that repeats it."""
+@dataclass(frozen=True, kw_only=True)
+class _EvenTorque:
+    """Turns that repeat under an even torque, about a mean speed.
 
-    @cache
-    def turn(size: float) -> RigidMotion:
-        motion = replace(run, motor=ConstantMotor(size)).from_speed(omega)
-        if motion.stopped is not None:
-            what = "the machine stops within a turn at this mean speed"
-            raise InfeasibleError(
-                what, where="drive.speed_rpm", nearest="a flywheel, or more speed"
-            )
-        return motion
+    Parameters
+    ----------
+    run : RigidRun
+        The machine.
+    mean : float, rad/s
+        The mean speed.
+    torque : float, N m
+        About that torque.
+    exact : float
+        Relative width to which roots are narrowed.
+    """
 
-    def gained(size: float) -> float:
-        return turn(size).gained
+    run: RigidRun
+    mean: float
+    torque: float
+    exact: float
 
-    if abs(gained(torque)) <= run.rtol * run.energy(0.0, omega):  # nothing depends on the speed
-        return turn(torque)
-    return turn(_root(gained, *_widened(gained, torque, 1e-2)))
+    def repeated(self, omega: float) -> RigidMotion:
+        """Return the turn that gains no energy from a speed `omega`, rad/s, at the first angle."""
+        low = float(self.run.machine.knots[0])
+        usual, torque = self.run.energy(low, omega), self.torque
+
+        def turn(size: float) -> RigidMotion:
+            return replace(self.run, motor=ConstantMotor(size)).from_speed(omega)
+
+        def gained(size: float) -> float:
+            return turn(size).gained
+
+        first = gained(torque)
+        if abs(first) <= 1e-12 * usual:  # nothing depends on the speed
+            return turn(torque)
+        step = max(abs(first), _COARSE * usual) / self.run.machine.period
+        ends = _beside(
+            gained, torque, lambda x: 2.0 * x - torque - step, lambda x: 2.0 * x - torque + step
+        )
+        return turn(_root(gained, *ends, self.exact))
+
+    def off(self, omega: float) -> float:
+        """Return by how much its mean speed is above the one that is wanted.
+
+        That of a machine that stops, or would with a little less torque, is 0.
+        """
+        motion = self.repeated(omega)
+        usual = self.run.energy(float(self.run.machine.knots[0]), omega)
+        steady = abs(motion.gained) <= max(_SAME, 100.0 * self.exact) * usual
+        return (motion.mean_speed if motion.stopped is None and steady else 0.0) - self.mean
+
+    def speed(self, near: float, part: float) -> float:
+        """Return the speed at the first angle, rad/s, at which nothing is off."""
+        off, down = cache(self.off), 1.0 - part
+        return _root(off, *_beside(off, near, lambda x: down * x, lambda x: x / down), self.exact)
 
 
-def _or_none(motion_with: Callable[[float], RigidMotion], inertia: float) -> RigidMotion | None:
-    """Return the regime with a flywheel, kg m2; None if there is none."""
-    try:
-        return motion_with(inertia)
-    except InfeasibleError:
-        return None
+def _beside(
+    rising: Callable[[float], float],
+    place: float,
+    down: Callable[[float], float],
+    up: Callable[[float], float],
+) -> tuple[float, float]:
+    """Return a bracket of the root of a rising function, in steps from a place."""
+    low = high = place
+    if rising(place) > 0.0:
+        while rising(low) > 0.0:
+            low, high = down(low), low
+    else:
+        while rising(high) < 0.0:
+            low, high = high, up(high)
+    return low, high
 
 
 def flywheel(
-    motion_with: Callable[[float], RigidMotion], wanted: float, inertia: float = 1.0
+    motion_with: Callable[[float], RigidMotion], wanted: float, usual: float
 ) -> tuple[float, RigidMotion]:
     """Return the least flywheel that keeps an irregularity, and the motion with it.
 
@@ -219,8 +289,8 @@ def flywheel(
         ``motion_with(inertia)`` returns the regime with a flywheel, kg m2.
     wanted : float
         The irregularity.
-    inertia : float, kg m2
-        Of the machine; the first flywheel that is tried if it does not run without one.
+    usual : float, kg m2
+        Moment of inertia from which flywheels are tried where the machine stops without one.
 
     Returns
     -------
@@ -231,35 +301,34 @@ def flywheel(
     Raises
     ------
     InfeasibleError
-        If the motor is too weak with any flywheel.
+        If the machine has no regime with any of them.
 
     Notes
     -----
     The first guess is (5.39), ``J = J0*(delta0/wanted)``; the irregularity falls as the flywheel
     grows.
     """
-    without = _or_none(motion_with, 0.0)
-    if without is not None and without.irregularity <= wanted:
-        return 0.0, without
-    if without is None:  # without a flywheel it does not run through the load
-        high = inertia
-    else:
-        own = without.machine.inertia(without.rows(without.knots))
-        high = float(np.mean(own)) * (without.irregularity / wanted)
 
     @cache
     def over(size: float) -> float:
-        motion = _or_none(motion_with, size)
-        return 2.0 if motion is None else motion.irregularity - wanted
+        try:
+            return motion_with(size).irregularity - wanted
+        except InfeasibleError:  # it stops: none is more irregular
+            return _STOPS - wanted
 
-    low = 0.0
-    for _ in range(_DOUBLINGS):
-        if over(high) <= 0.0:
-            break
-        low, high = high, 2.0 * high
+    low, high = 0.0, usual
+    if over(low) >= _STOPS - wanted:
+        while over(high) >= _STOPS - wanted:
+            low, high = high, 4.0 * high
+            if high > _HEAVIEST * usual:
+                motion_with(0.0)  # refuses it
     else:
-        motion_with(high)  # which may say why
-        what = f"no flywheel up to {formatted(high, 3)} kg m2 keeps this irregularity"
-        raise InfeasibleError(what, where="motor.irregularity", nearest="a larger one")
+        without = motion_with(0.0)
+        if without.irregularity <= wanted:
+            return 0.0, without
+        inertia = without.machine.inertia(without.rows(without.knots))
+        high = float(np.mean(inertia)) * (without.irregularity / wanted)
+    while over(high) > 0.0:
+        low, high = high, 2.0 * high
     found = _root(over, low, high)
     return found, motion_with(found)

@@ -9,7 +9,7 @@ integration itself.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Final
 
@@ -128,6 +128,8 @@ class RigidMotion(ShortRepr):
         if self.motion is None:
             only = float(self.knots[0]), self.even
             return only, only
+        if len(self._cells) < 2:  # it does not start
+            return (self.ends[0], 0.0), (self.ends[0], 0.0)
         places, values = extremes(self._speed_and_slope, self._cells, cells=True)
         low, high = int(values.argmin()), int(values.argmax())
         return (float(places[low]), float(values[low])), (float(places[high]), float(values[high]))
@@ -165,10 +167,19 @@ class RigidMotion(ShortRepr):
 
     @property
     def residue(self) -> float:
-        """What the balance of works and energy leaves, over the largest of them."""
-        motor, load, lost = self.works
-        largest = max(map(abs, (motor, load, lost, self.gained)))
-        return abs(motor - load - lost - self.gained) / largest if largest else 0.0
+        """What the balance of works and energy leaves, over the larger of the energies in and out.
+
+        In is what it had at the start and the motor's work, out what it has at the end and the
+        works on loads and lost; a negative work counts on the other side (see `StiffRun.residue`).
+        """
+        first = np.array(self.ends[:1])
+        inertia = self.machine.inertia(self.rows(first))
+        before = 0.5 * float((inertia * self.speed(first) ** 2)[0])
+        ins = (before, self.works[0])
+        outs = (before + self.gained, *self.works[1:])
+        into = sum(max(one, 0.0) for one in ins) - sum(min(one, 0.0) for one in outs)
+        out = sum(max(one, 0.0) for one in outs) - sum(min(one, 0.0) for one in ins)
+        return abs(into - out) / max(into, out) if into or out else 0.0
 
     @cached_property
     def stopped(self) -> float | None:
@@ -233,35 +244,26 @@ class RigidRun(ShortRepr):
 
     def _integrated(
         self, energy: float, time: float, knots: Array, keep: float = -math.inf
-    ) -> RigidMotion:
+    ) -> Motion:
         tiny = 1e-3 * self.rtol
         atol = (tiny * self._usual, tiny * TURN / self.scale)
         integrator = Integrator(method=self.method, rtol=self.rtol, atol=atol)
-        motion = integrator(self._modes, (MOVES, [energy, time]), [*knots], keep=keep)
-        return RigidMotion(machine=self.machine, motor=self.motor, knots=knots, motion=motion)
+        return integrator(self._modes, (MOVES, [energy, time]), [*knots], keep=keep)
 
-    def _knots(self, turns: float, low: float | None = None) -> Array:
-        """Return the knots from `low`, the first one by default, over a number of turns."""
-        own = self.machine.knots
-        if not self.machine.closed:
-            every, high = own, own[-1]
-        else:
-            count = math.ceil(turns)
-            every = np.unique(np.add.outer(self.machine.period * np.arange(count), own))
-            high = own[0] + self.machine.period * turns
-        first = own[0] if low is None else low
-        return np.concatenate([[first], every[(every > first) & (every < high)], [high]])
+    def _over(self, knots: Array, motion: Motion) -> RigidMotion:
+        return RigidMotion(machine=self.machine, motor=self.motor, knots=knots, motion=motion)
 
     def from_speed(self, omega: float, turns: float = 1.0) -> RigidMotion:
         """Return the motion from the first angle, at a speed of `omega`, rad/s, over `turns`."""
         low = float(self.machine.knots[0])
-        return self._integrated(self.energy(low, omega), 0.0, self._knots(turns))
+        knots = self.machine.knots_over(turns)
+        return self._over(knots, self._integrated(self.energy(low, omega), 0.0, knots))
 
     def speed_after_turn(self, omega: float) -> float:
         """Return the speed after a turn from the first angle, rad/s; 0 if the machine stops."""
-        low, knots = float(self.machine.knots[0]), self._knots(1.0)
-        motion = self._integrated(self.energy(low, omega), 0.0, knots, math.inf).motion
-        if motion is None or motion.mode == STANDS:
+        low, knots = float(self.machine.knots[0]), self.machine.knots_over(1.0)
+        motion = self._integrated(self.energy(low, omega), 0.0, knots, math.inf)
+        if motion.mode == STANDS:
             return 0.0
         inertia = self.machine.inertia(self.machine.rows(low))
         return math.sqrt(2.0 * float(motion.end[0]) / inertia)
@@ -277,8 +279,7 @@ class RigidRun(ShortRepr):
         Returns
         -------
         RigidMotion
-            It begins a little after the first angle; it has stopped there if the load is larger
-            than the torque at rest.
+            It has stopped at the first angle if the load is larger than the torque at rest.
         """
         low = float(self.machine.knots[0])
         row = self.machine.rows(low)
@@ -287,8 +288,16 @@ class RigidRun(ShortRepr):
         if torque <= 0.0:
             return self._standing(low)
         angle = _BEGUN * self._usual / torque
-        time = math.sqrt(2.0 * self.machine.inertia(row) * angle / torque)
-        return self._integrated(torque * angle, time, self._knots(turns, low + angle))
+        slow = math.sqrt(2.0 * self.machine.inertia(row) / torque)
+
+        def series(x: Array) -> Array:
+            phi = np.maximum(x - low, 0.0)
+            return np.array([torque * phi, slow * np.sqrt(phi)])
+
+        knots = self.machine.knots_over(turns, low + angle)
+        motion = self._integrated(torque * angle, slow * math.sqrt(angle), knots)
+        pieces = [MotionPiece(low, low + angle, MOVES, series), *motion.pieces]
+        return self._over(np.array([low, *knots[1:]]), replace(motion, pieces=pieces))
 
     def _standing(self, low: float) -> RigidMotion:
         """Return the motion of a machine that does not start."""
@@ -302,4 +311,4 @@ class RigidRun(ShortRepr):
             evaluations=0,
             steps=0,
         )
-        return RigidMotion(machine=self.machine, motor=self.motor, knots=knots, motion=motion)
+        return self._over(knots, motion)

@@ -45,8 +45,8 @@ class DynamicsSpec(ShortRepr):
         ge=1,
         le=100_000,
         example=10,
-        doc="number of turns of a run that is no regime; 3 by default, coasting 100, of an open "
-        "machine its travel",
+        doc="number of turns of a run that is no regime, or has elastic wheels; 3 by default, "
+        "coasting 100, of an open machine its travel",
     )
     steps: int = param(
         COUNT,
@@ -62,6 +62,17 @@ class DynamicsSpec(ShortRepr):
         doc="relative tolerance of the integration; rigid machines, which cost little, have a "
         "thousandth of it, 1e-12 at least",
     )
+
+    def problems(self) -> Iterator[Breach]:
+        """Yield contradictions: field, index, message, what is allowed."""
+        if self.turns is not None and self.run == REGIME and not self._settles:
+            near = f'left out, or run = "{START}", "{TURNS}" or "{COAST}"'
+            yield "turns", None, "has no effect: a regime is one turn, which repeats", near
+
+    @property
+    def _settles(self) -> bool:
+        """Whether a regime is what has settled after some turns."""
+        return False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,11 +120,17 @@ class PairDynamicsSpec(DynamicsSpec):
 
     def problems(self) -> Iterator[Breach]:
         """Yield contradictions: field, index, message, what is allowed."""
+        yield from super().problems()
         if self.stiffness is not None and self.finite_elements:
             what = "is given beside finite_elements"
             yield "stiffness", None, what, "stiffness_n_mm_um, or finite_elements = true"
         if self.inertia is not None and not any(self.inertia):
             yield "inertia", None, "nothing has inertia", "a value above 0 for either shaft"
+
+    @property
+    def _settles(self) -> bool:
+        """Whether it does, if the wheels are elastic."""
+        return self.stiffness is not None or self.finite_elements
 
     @property
     def elastic(self) -> bool:

@@ -20,7 +20,7 @@ from gearcam.dynamics.motors import ConstantMotor, motor_of
 from gearcam.dynamics.regime import even_torque, flywheel, regime
 from gearcam.dynamics.rigid import RigidMotion, RigidRun
 from gearcam.dynamics.settings import COAST, DYNAMICS, REGIME, START, TURNS
-from gearcam.numeric.piecewise import extremes, with_both_sides
+from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Line, knot_marks
 from gearcam.pictures.scenes import PLACES
 
@@ -42,11 +42,11 @@ _LEAST_TOLERANCE: Final = 1e-12
 _HIGHEST: Final = 4
 """Highest degree of a polynomial in the speed that a load may be."""
 
+_NOTHING: Final = 1e-9
+"""Moment of inertia over the largest that is 0."""
+
 _SAME: Final = 1e-9
 """Difference of loads over the largest that is rounding."""
-
-_LIGHT: Final = 1e-9
-"""Moment of inertia, over the largest, up to which it is none."""
 
 _UNTIL_REST: Final = 100
 """Largest number of turns of a machine that coasts."""
@@ -95,6 +95,11 @@ def _problem(motor: MotorSpec, run: str, speed: float | None, key: str) -> Probl
         what = "a motor of an even torque has no regime of its own"
         near = f"left out, with {key}: then it is the mean of the load"
         return Problem(what, key="motor.torque_nm", allowed=near)
+    made = motor_of(motor)
+    if run == REGIME and motor.type == "table" and made is not None and not made.settles:
+        what = "such a motor has no regime of its own: its torque does not fall"
+        near = "less at the highest speed than at all others"
+        return Problem(what, key="motor.torque_nm", allowed=near)
     if run in (START, TURNS) and motor.type == "constant" and motor.torque is None:
         return Problem(
             missing + "the motor has no torque", key="motor.torque_nm", allowed="a torque"
@@ -105,6 +110,9 @@ def _problem(motor: MotorSpec, run: str, speed: float | None, key: str) -> Probl
     evenly = motor.turns_evenly or (motor.type == "constant" and run == REGIME)
     if speed is None and (evenly or run in (TURNS, COAST)):
         return Problem(missing + "the speed of the driver", key=key, allowed="a speed above 0")
+    if motor.irregularity is not None and run != REGIME:
+        what = f'is that of a regime, not of run = "{run}"'
+        return Problem(what, key="motor.irregularity", allowed='left out, or run = "regime"')
     if motor.flywheel == "solve" and run != REGIME:
         what = f'"solve": a flywheel is found for a regime, not for run = "{run}"'
         return Problem(what, key="motor.flywheel_kg_m2", allowed='a number, or run = "regime"')
@@ -211,7 +219,9 @@ class MachineRun(ShortRepr):
     def _found(self) -> tuple[float, RigidMotion]:
         given = self.design.motor.flywheel
         if given == "solve":
-            return flywheel(self._moving, self.design.motor.irregularity, self._lightest[2] or 1.0)
+            (_, low), (_, high) = self.machine.inertia_ends
+            usual = 0.5 * (low + high) or 1.0
+            return flywheel(self._moving, self.design.motor.irregularity, usual)
         return given, self._moving(given)
 
     @property
@@ -256,13 +266,15 @@ class MachineRun(ShortRepr):
         usual = _UNTIL_REST if spec.run == COAST else 3
         turns = spec.turns or (usual if machine.closed else 1)
         if self.motor is None:
-            return RigidMotion(
-                machine=machine, motor=None, knots=machine.knots, even=self.speed or 0.0
-            )
-        place, least, most = self._lightest
-        if not least + inertia > _LIGHT * (most + inertia):
-            what = f"nothing that moves at {self.place(place)} has inertia"
-            raise InfeasibleError(what, where="dynamics", nearest="a flywheel, or masses")
+            knots = machine.knots_over(turns) if spec.run == TURNS else machine.knots
+            return RigidMotion(machine=machine, motor=None, knots=knots, even=self.speed or 0.0)
+        (least_at, least), (_, largest) = machine.inertia_ends
+        if least <= _NOTHING * largest:
+            what = "nothing of the machine has inertia"
+            if largest > 0.0:
+                what = "nothing that has inertia moves here: the speed would be infinite"
+            near = "a flywheel, or inertia of the driver"
+            raise InfeasibleError(what, where=self.place(least_at), nearest=near)
         run = RigidRun(
             machine=machine,
             motor=self.motor,
@@ -270,30 +282,12 @@ class MachineRun(ShortRepr):
             rtol=max(_FINER * spec.tolerance, _LEAST_TOLERANCE),
         )
         if spec.run == START:
-            motion = run.from_rest(turns)
-            if motion.stopped == motion.knots[0]:
-                what = "the motor does not turn the load at rest"
-                raise InfeasibleError(what, where="motor", nearest="a larger torque at rest")
-            return motion
+            return run.from_rest(turns)
         if spec.run in (TURNS, COAST):
             return run.from_speed(self.speed or 0.0, turns)
         if self.motor.settles:
             return regime(run)
         return even_torque(run, self.speed or 0.0)
-
-    @cached_property
-    def _lightest(self) -> tuple[float, float, float]:
-        """Where the moment of inertia is least, rad, and its least and largest value, kg m2."""
-        machine = self.machine
-
-        def inertia(phi: Array) -> list[Array]:
-            row = machine.rows.at(phi)
-            return [np.asarray(one(row)) for one in (machine.inertia, machine.inertia_slope)]
-
-        edges = np.union1d(machine.rows.edges, machine.knots)
-        places, values = extremes(inertia, edges, cells=True)
-        low = int(values.argmin())
-        return round(float(places[low]), 9), float(values[low]), float(values.max())
 
     def _demand_turns(self) -> None:
         """Refuse a regime, or turns, of a machine that has a travel."""
@@ -411,9 +405,7 @@ class MachineRun(ShortRepr):
                 motion.lasts, f"time of a {turn}" if steady else "time", unit="s", shown=True
             ),
             "inertia_kg_m2": Fact(
-                extent(
-                    float(columns["inertia_kg_m2"].min()), float(columns["inertia_kg_m2"].max())
-                ),
+                extent(*(one for _, one in motion.machine.inertia_ends)),
                 "moment of inertia at the driver",
                 unit="kg m2",
                 shown=True,

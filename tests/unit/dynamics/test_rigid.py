@@ -13,7 +13,13 @@ from scipy.optimize import brentq
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.dynamics.machine import PairMachine, ReducedMachine
-from gearcam.dynamics.motors import ConstantMotor, LinearMotor, SpringMotor
+from gearcam.dynamics.motors import (
+    AsynchronousMotor,
+    ConstantMotor,
+    LinearMotor,
+    SpringMotor,
+    TableMotor,
+)
 from gearcam.dynamics.regime import even_torque, flywheel, regime
 from gearcam.dynamics.rigid import RigidMotion, RigidRun
 from gearcam.dynamics.tabled import Tabled
@@ -164,10 +170,10 @@ def test_the_least_flywheel_makes_the_wanted_irregularity_and_a_lighter_one_miss
     def with_(inertia):
         return regime(RigidRun(machine=uneven().with_flywheel(inertia), motor=motor, scale=30.0))
 
-    least, motion = flywheel(with_, 0.03)
+    least, motion = flywheel(with_, 0.03, 1.0)
     assert motion.irregularity == pytest.approx(0.03, rel=1e-8)
     assert with_(0.99 * least).irregularity > 0.03
-    assert flywheel(with_, 0.9)[0] == 0.0
+    assert flywheel(with_, 0.9, 1.0)[0] == 0.0
 
 
 def test_a_flywheel_neglects_only_a_square_of_the_irregularity():
@@ -236,6 +242,114 @@ def test_a_machine_that_only_a_flywheel_carries_through_its_load_gets_the_least_
         with_(0.0)
     told = float(caught.value.nearest.split("flywheel of ")[1].split()[0])
     assert with_(told).residue < 1e-7
-    least, motion = flywheel(with_, 0.2)
+    least, motion = flywheel(with_, 0.2, 2.0)
     assert motion.irregularity == pytest.approx(0.2, rel=1e-8)
     assert with_(0.98 * least).irregularity > 0.2
+
+
+def test_an_induction_motor_has_the_torque_of_its_formula_and_holds_its_stable_speed():
+    # 2*Mk/(s/sk + sk/s) = M has the smaller root s = sk*(k - sqrt(k^2 - 1)), k = Mk/M
+    motor = AsynchronousMotor(50.0, 0.02, 30.0)
+    for load in (45.0, 10.0, -45.0):  # also one that drives
+        k = 50.0 / abs(load)
+        slip = math.copysign(0.02 * (k - math.sqrt(k * k - 1.0)), load)
+        assert motor.torque(0.0, 30.0 * (1.0 - slip)) == pytest.approx(load, rel=1e-12)
+        machine = reduced(constant(0.05), constant(0.0), constant(load))
+        motion = regime(RigidRun(machine=machine, motor=motor, scale=30.0))
+        assert motion.mean_speed == pytest.approx(30.0 * (1.0 - slip), rel=1e-8)
+
+
+def test_a_motor_by_a_table_holds_the_speed_at_which_it_has_the_torque_of_the_load():
+    motor = TableMotor((0.0, 28.0, 29.0, 30.0), (5.0, 8.0, 60.0, 0.0))
+    assert motor.torque(0.0, np.array([0.0, 28.0, 29.0, 30.0])) == pytest.approx([5, 8, 60, 0])
+    assert motor.torque(0.0, 31.0) == pytest.approx(-60.0)
+    machine = reduced(constant(0.05), constant(0.0), constant(50.0))
+    motion = regime(RigidRun(machine=machine, motor=motor, scale=30.0))
+    assert motor.torque(0.0, motion.mean_speed) == pytest.approx(50.0, rel=1e-6)
+    assert motion.mean_speed > 29.0
+
+
+def test_a_load_that_drives_more_than_the_motor_brakes_is_refused():
+    machine = reduced(constant(0.05), constant(0.0), constant(-60.0))
+    run = RigidRun(machine=machine, motor=AsynchronousMotor(50.0, 0.02, 30.0), scale=30.0)
+    with pytest.raises(InfeasibleError, match="ever faster"):
+        regime(run)
+
+
+@pytest.mark.parametrize(
+    ("mean", "shape"), [(20.0, np.cos), (11.8, np.sin), (30.0, lambda x: -np.sin(x))]
+)
+def test_an_even_torque_is_found_from_whatever_speed_the_turn_begins_at(mean, shape):
+    # without a net load: E = E0 - integral of 50*shape; the mean speed is half of both extremes
+    machine = reduced(constant(1.0), constant(0.0), lambda x: 50.0 * shape(x))
+    motion = even_torque(RigidRun(machine=machine, motor=ConstantMotor(), scale=mean), mean)
+    assert motion.mean_speed == pytest.approx(mean, rel=1e-9)
+    assert abs(motion.motor.size) < 1e-6
+    # omega_max^2 - omega_min^2 = 2*delta*mean^2 = 2*100/J
+    assert motion.irregularity == pytest.approx(100.0 / mean**2, rel=1e-7)
+
+
+def test_an_even_torque_may_drive_or_brake_a_load_that_depends_on_the_speed():
+    rows = Tabled(
+        lambda x: np.array([1.0 + 0.0 * x, 0.0 * x, -30.0 + 20.0 * np.cos(x), 0.5 + 0.0 * x]),
+        [0.0, TURN],
+        1e-13,
+    )
+    machine = ReducedMachine(rows=rows, knots=np.array([0.0, TURN]))
+    motion = even_torque(RigidRun(machine=machine, motor=ConstantMotor(), scale=20.0), 20.0)
+    assert motion.mean_speed == pytest.approx(20.0, rel=1e-9)
+    assert abs(motion.gained) < 1e-7
+    # its work is that of the load, whose mean speed over the angle is a little another
+    assert motion.motor.size == pytest.approx(-30.0 + 0.5 * 20.0, rel=1e-2)
+
+
+def test_an_even_torque_that_would_stop_the_machine_is_refused():
+    machine = reduced(constant(1.0), constant(0.0), lambda x: 50.0 * np.sin(x))
+    run = RigidRun(machine=machine, motor=ConstantMotor(), scale=6.0)
+    with pytest.raises(InfeasibleError, match="stops"):  # least possible: half of sqrt(200)
+        even_torque(run, 6.9)
+    assert even_torque(run, 7.2).mean_speed == pytest.approx(7.2, rel=1e-9)
+
+
+def test_a_flywheel_is_found_for_a_machine_that_stops_without_one():
+    # a short load needs more energy than the machine has
+    knots = (0.0, 3.0, 3.5, TURN)
+    motor = LinearMotor(100.0, 12.0)
+
+    def with_(inertia):
+        machine = reduced(
+            constant(0.05), constant(0.0), lambda x: 300.0 * ((x >= 3.0) & (x < 3.5)), knots
+        )
+        return regime(
+            RigidRun(machine=machine.with_flywheel(inertia), motor=motor, scale=12.0, rtol=1e-9)
+        )
+
+    with pytest.raises(InfeasibleError):
+        with_(0.0)
+    least, motion = flywheel(with_, 0.2, 0.05)
+    assert motion.irregularity == pytest.approx(0.2, rel=1e-8)
+    assert with_(0.99 * least).irregularity > 0.2
+
+
+def test_energies_that_only_go_to_and_fro_balance_too():
+    machine = reduced(constant(2.0), constant(0.0), lambda x: 3.0 * np.cos(x))
+    motion = RigidRun(machine=machine, motor=ConstantMotor(), scale=5.0).from_speed(5.0)
+    assert motion.residue < 1e-10
+    assert abs(motion.works[1]) < 1e-10
+
+
+def test_a_start_from_rest_holds_from_the_first_angle_on():
+    machine = reduced(constant(2.0), constant(0.0), constant(0.0))
+    motion = RigidRun(machine=machine, motor=ConstantMotor(4.0), scale=5.0).from_rest(1.0)
+    assert motion.ends[0] == 0.0
+    assert motion.speeds[0][1] < 1e-6
+    x = np.array([0.0, 1e-12, 1e-6, 1.0, TURN])  # phi = t^2
+    assert motion.time(x) == pytest.approx(np.sqrt(x), rel=1e-7)
+    assert motion.speed(x) == pytest.approx(2.0 * np.sqrt(x), rel=1e-7)
+    assert motion.lasts == pytest.approx(math.sqrt(TURN), rel=1e-8)
+
+
+def test_the_moment_of_inertia_has_its_exact_ends():
+    machine = uneven().with_flywheel(0.5)
+    assert machine.inertia_ends[0] == pytest.approx((math.pi, 1.5), abs=1e-9)
+    assert machine.inertia_ends[1][1] == pytest.approx(3.5, abs=1e-9)

@@ -49,7 +49,8 @@ def demand(design: Any) -> None:
             )
             raise DesignError([problem])
     dense = all(design.blank.wheel(number).density is not None for number in (1, 2))
-    if design.dynamics.inertia is None and not dense and not design.motor.turns_evenly:
+    needed = design.dynamics.elastic or not design.motor.turns_evenly
+    if design.dynamics.inertia is None and not dense and needed:
         what = "is missing: the wheels have no density either"
         near = "moments of inertia of both shafts, or blank.density_kg_m3"
         raise DesignError([Problem(what, file=source, key=key, allowed=near)])
@@ -63,6 +64,9 @@ def _demand_elastic(design: Any) -> None:
     if spec.run == START:
         what, near = '"start": elastic teeth begin at a speed', '"turns", or rigid = true'
         raise DesignError([Problem(what, file=source, key="dynamics.run", allowed=near)])
+    if design.steps.count > 1:
+        what, near = "elastic teeth of stepped wheels are not computed", "1, or rigid = true"
+        raise DesignError([Problem(what, file=source, key="steps.count", allowed=near)])
     if spec.inertia is not None and (
         not spec.inertia[1] or not (spec.inertia[0] or design.motor.turns_evenly)
     ):

@@ -302,14 +302,15 @@ class ElasticRun(PairRun):
             done = round(100.0 * (phi1 - low) / self.machine.period)
             self.progress(f"hundredths of turns{told}", done, turns)
 
-        runs = []
-        for rtol in (spec.tolerance, 0.1 * spec.tolerance):
+        def made(rtol: float) -> StiffRun:
             run = self.pair.run(start, high, rtol=rtol, passed=passed, **settings)
-            if run.stalled:  # its last turn was not kept
-                settings["keep"] = max(low, run.motion.place - self.machine.period)
-                run = self.pair.run(start, high, rtol=rtol, passed=passed, **settings)
-            runs.append(run)
-        return runs[0], runs[1]
+            if run.motion.pieces:
+                return run
+            # it stalled before what is kept
+            kept: dict[str, Any] = {"keep": max(low, run.motion.place - self.machine.period)}
+            return self.pair.run(start, high, rtol=rtol, **settings | kept)
+
+        return made(spec.tolerance), made(0.1 * spec.tolerance)
 
     @property
     def motion(self) -> ElasticMotion:

@@ -44,6 +44,12 @@ _PER_TOOTH: Final = 24
 _CLOSE: Final = 1e-13
 """Width to which they are narrowed, over the turn or travel."""
 
+_PROBES: Final = 97
+"""Places at which loads are looked at."""
+
+_REPEATS: Final = 1e-6
+"""Difference of a load in another turn, over the largest, that is rounding."""
+
 _EXACT: Final = 1e-11
 """Error of tables over the largest value."""
 
@@ -98,7 +104,9 @@ def machine_of(under: PairUnderLoad, inertia: tuple[float, float], speed: float)
     knots = np.concatenate([[0.0], under.knots(back=rubs, forth=rubs), [under.travel]])
     if rubs:
         knots = np.union1d(knots, _turns_of_friction(under, knots))
-    coefficients = speed_powers(load, np.linspace(0.0, under.travel, 97), speed)
+    if under.turns:
+        _demand_period(under, load, speed)
+    coefficients = speed_powers(load, np.linspace(0.0, under.travel, _PROBES), speed)
 
     def rows(phi1: Array) -> Array:
         _, ratio, slope = (guide.scale * one for one in guide.law.derivatives(phi1, 2))
@@ -112,6 +120,18 @@ def machine_of(under: PairUnderLoad, inertia: tuple[float, float], speed: float)
         what = f"ratio or load is {'not smooth' if error.finite else 'not finite'}"
         raise InfeasibleError(f"{what} at {angle_text(error.place)}", where="load") from error
     return PairMachine(rows=tabled, knots=knots, driver=inertia[0], driven=inertia[1], rubs=rubs)
+
+
+def _demand_period(
+    under: PairUnderLoad, load: Callable[[Array, float], Array], speed: float
+) -> None:
+    """Refuse a load over phi2 that does not repeat with each turn of the driver."""
+    x = np.linspace(0.0, under.travel, _PROBES)
+    first, second = load(x, speed), load(x + under.travel, speed)
+    if np.abs(second - first).max() > _REPEATS * np.abs(first).max():
+        what = "a load does not repeat with every turn of the driver, as the motion does"
+        near = "over phi1, or over whole turns of the driven wheel in a turn"
+        raise InfeasibleError(what, where="load", nearest=near)
 
 
 def _turns_of_friction(under: PairUnderLoad, knots: Array) -> Array:

@@ -141,6 +141,7 @@ def test_a_resonance_is_told_at_the_speed_that_makes_it_and_not_far_from_it():
             "begin at a speed",
         ),
         ({"dynamics.damping_ratio": 1.0}, "out of range"),
+        ({"steps.count": 2}, "stepped"),
     ],
 )
 def test_what_elastic_teeth_cannot_do_is_refused(changes, words):
@@ -166,3 +167,15 @@ def test_elastic_teeth_that_coast_stop_where_rigid_ones_do():
     stop = rigid.facts["dynamics.stopped_deg"]
     assert elastic.facts["dynamics.stopped_deg"] % 360.0 == pytest.approx(stop % 360.0, abs=1.0)
     assert elastic.facts["dynamics.speed_rpm.last"] == 0.0
+
+
+def test_a_pair_that_stops_in_an_early_turn_is_stated_up_to_there():
+    own = {**ELASTIC, "run": "coast", "turns": 3}
+    found = gc.build(design("circular", **{"dynamics": own, "drive.speed_rpm": 60})).study(
+        "dynamics"
+    )
+    ratio = found.result.law.ratio(np.zeros(1))[0]
+    energy = 0.5 * (0.02 + 0.03 * ratio**2) * (2.0 * np.pi) ** 2
+    stopped = np.radians(found.facts["dynamics.stopped_deg"])
+    assert 40.0 * ratio * stopped == pytest.approx(energy, rel=0.1)  # teeth give a little
+    assert "stalls" in [one.code for one in found.study_findings]
