@@ -66,8 +66,8 @@ def _root(
     """Return the root of a function that changes its sign between two places."""
     from scipy.optimize import brentq
 
-    width = exact * max(abs(low), abs(high))
-    found, _ = brentq(function, low, high, xtol=width, rtol=exact, full_output=True)
+    width, relative = exact * max(abs(low), abs(high)), np.float64(exact)
+    found, _ = brentq(function, low, high, xtol=width, rtol=relative, full_output=True)
     return float(found)
 
 

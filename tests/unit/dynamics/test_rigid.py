@@ -282,7 +282,7 @@ def test_a_load_that_drives_more_than_the_motor_brakes_is_refused():
 def test_an_even_torque_is_found_from_whatever_speed_the_turn_begins_at(mean, shape):
     # without a net load: E = E0 - integral of 50*shape; the mean speed is half of both extremes
     machine = reduced(constant(1.0), constant(0.0), lambda x: 50.0 * shape(x))
-    motion = even_torque(RigidRun(machine=machine, motor=ConstantMotor(), scale=mean), mean)
+    motion: Any = even_torque(RigidRun(machine=machine, motor=ConstantMotor(), scale=mean), mean)
     assert motion.mean_speed == pytest.approx(mean, rel=1e-9)
     assert abs(motion.motor.size) < 1e-6
     # omega_max^2 - omega_min^2 = 2*delta*mean^2 = 2*100/J
@@ -296,7 +296,7 @@ def test_an_even_torque_may_drive_or_brake_a_load_that_depends_on_the_speed():
         1e-13,
     )
     machine = ReducedMachine(rows=rows, knots=np.array([0.0, TURN]))
-    motion = even_torque(RigidRun(machine=machine, motor=ConstantMotor(), scale=20.0), 20.0)
+    motion: Any = even_torque(RigidRun(machine=machine, motor=ConstantMotor(), scale=20.0), 20.0)
     assert motion.mean_speed == pytest.approx(20.0, rel=1e-9)
     assert abs(motion.gained) < 1e-7
     # its work is that of the load, whose mean speed over the angle is a little another
