@@ -303,6 +303,7 @@ def test_an_even_torque_may_drive_or_brake_a_load_that_depends_on_the_speed():
     assert motion.motor.size == pytest.approx(-30.0 + 0.5 * 20.0, rel=1e-2)
 
 
+@pytest.mark.slow
 def test_an_even_torque_that_would_stop_the_machine_is_refused():
     machine = reduced(constant(1.0), constant(0.0), lambda x: 50.0 * np.sin(x))
     run = RigidRun(machine=machine, motor=ConstantMotor(), scale=6.0)
@@ -311,6 +312,7 @@ def test_an_even_torque_that_would_stop_the_machine_is_refused():
     assert even_torque(run, 7.2).mean_speed == pytest.approx(7.2, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_flywheel_is_found_for_a_machine_that_stops_without_one():
     # a short load needs more energy than the machine has
     knots = (0.0, 3.0, 3.5, TURN)
