@@ -149,6 +149,7 @@ def test_a_weak_motor_is_refused_with_a_load_that_has_a_regime():
         regime(run)
     share = float(caught.value.nearest.split("up to ")[1].split()[0])
     assert 0.0 < share < 1.0
+    assert "weights and springs" in caught.value.nearest  # of a mechanism, all of them
     assert regime(replace(run, machine=replace(machine, share=share))).residue < 1e-8
     with pytest.raises(InfeasibleError):
         regime(replace(run, machine=replace(machine, share=1.1 * share)))
