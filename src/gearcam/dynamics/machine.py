@@ -22,7 +22,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Final, Self
+from typing import Any, ClassVar, Final, Self
 
 import numpy as np
 
@@ -50,6 +50,9 @@ class Machine(ABC, ShortRepr):
     share : float
         Share of its loads that acts.
     """
+
+    lighter: ClassVar[str] = "a load of up to {} times this one runs"
+    """What is told of that share, where all of them is too much."""
 
     rows: Tabled
     knots: Array
@@ -214,6 +217,8 @@ class PairMachine(Machine):
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ReducedMachine(Machine):
     """A mechanism; a row has its reduced inertia, the derivative of this, and its load."""
+
+    lighter = "loads, weights and springs of up to {} times these run"
 
     def inertia(self, row: Any) -> Any:
         """Return the reduced inertia."""

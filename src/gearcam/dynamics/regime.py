@@ -145,12 +145,12 @@ def _too_weak(coarse: RigidRun) -> InfeasibleError:
         if _bracket(partial(_gain, lighter), lighter) is not None:
             share += step
     what = "the motor does not turn this load: the machine stops within a turn, from any speed"
-    nearest = f"a load of up to {formatted(shortened(share, -1e-2 * share, 2))} times this one runs"
+    nearest = coarse.machine.lighter.format(formatted(shortened(share, -1e-2 * share, 2)))
     if share <= 0.0:
         nearest = "a stronger motor"
     heavy = _carrying(coarse)
     if heavy:
-        nearest += f"; with a flywheel of {formatted(heavy)} kg m2 all of it does"
+        nearest += f"; with a flywheel of {formatted(heavy)} kg m2 all of it runs"
     return InfeasibleError(what, where="motor", nearest=nearest)
 
 

@@ -19,10 +19,12 @@ from gearcam.dynamics.motors import (
     LinearMotor,
     SpringMotor,
     TableMotor,
+    motor_of,
 )
 from gearcam.dynamics.regime import even_torque, flywheel, regime
 from gearcam.dynamics.rigid import RigidMotion, RigidRun
 from gearcam.dynamics.tabled import Tabled
+from gearcam.mechanics.motor import MotorSpec
 
 TURN = 2.0 * math.pi
 
@@ -150,6 +152,7 @@ def test_a_weak_motor_is_refused_with_a_load_that_has_a_regime():
         regime(run)
     share = float(caught.value.nearest.split("up to ")[1].split()[0])
     assert 0.0 < share < 1.0
+    assert "weights and springs" in caught.value.nearest  # of a mechanism, all of them
     assert regime(replace(run, machine=replace(machine, share=share))).residue < 1e-8
     with pytest.raises(InfeasibleError):
         regime(replace(run, machine=replace(machine, share=1.1 * share)))
@@ -185,7 +188,8 @@ def test_a_flywheel_neglects_only_a_square_of_the_irregularity():
 
 def test_friction_of_teeth_takes_what_the_equations_of_both_wheels_say():
     rubs = (0.05, -0.03)  # kappa - i where teeth drive, and where they are driven
-    machine, ratio, slope = ellipses(2.0, 3.0, load=40.0, rubs=rubs)
+    machine, ratio, slope = ellipses(1.25, 3.0, load=40.0, rubs=rubs)
+    machine = machine.with_flywheel(0.75)
     motor = LinearMotor(300.0, 25.0)
     motion = RigidRun(machine=machine, motor=motor, scale=25.0, rtol=1e-11).from_speed(12.0)
 
@@ -211,6 +215,9 @@ def test_friction_of_teeth_takes_what_the_equations_of_both_wheels_say():
     )
     assert motion.speed(motion.knots[-1:])[0] == pytest.approx(found.y_events[0][0, 1], rel=1e-8)
     assert motion.works[2] == pytest.approx(found.y_events[0][0, 2], rel=1e-6)
+    sampled = motion.speed(np.linspace(0.0, TURN, 100_001))
+    extremes = [sampled.min(), sampled.max()]
+    assert [one for _, one in motion.speeds] == pytest.approx(extremes, rel=1e-8)
     x = np.linspace(0.0, 6.0, 400)
     carried = machine.mesh_torque(motion.rows(x), motion.speed(x), motor.torque(x, motion.speed(x)))
     assert carried[0].min() < 0.0 < carried[0].max()  # both flanks carry
@@ -355,3 +362,41 @@ def test_the_moment_of_inertia_has_its_exact_ends():
     machine = uneven().with_flywheel(0.5)
     assert machine.inertia_ends[0] == pytest.approx((math.pi, 1.5), abs=1e-9)
     assert machine.inertia_ends[1][1] == pytest.approx(3.5, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("spec", "phi", "omega", "torque"),
+    [
+        (MotorSpec(type="spring", torque=(8e3,), stiffness=500.0), 6.0, 3.0, 5.0),
+        (MotorSpec(type="linear", start_torque=8e3, idle=20.0), 6.0, 5.0, 6.0),
+        (MotorSpec(type="constant", torque=(8e3,)), 6.0, 5.0, 8.0),
+        (MotorSpec(type="table", torque=(8e3, 0.0), rpm=(0.0, 60.0)), 1.0, math.pi, 4.0),
+        (
+            MotorSpec(
+                type="asynchronous", breakdown_torque=8e3, breakdown_slip=0.25, synchronous=20.0
+            ),
+            1.0,
+            15.0,
+            8.0,
+        ),
+    ],
+)
+def test_motors_have_the_torques_of_their_tables_in_n_m(spec, phi, omega, torque):
+    # inside, torques are N mm and those of springs N mm/rad; rows of speeds are rpm
+    assert motor_of(spec).torque(phi, omega) == pytest.approx(torque, rel=1e-12)
+
+
+def test_the_slope_of_the_inertia_of_a_pair_is_its_derivative():
+    machine, _, _ = ellipses(2.0, 3.0)
+    x, step = np.linspace(0.1, 6.0, 50), 1e-5
+    ends = [machine.inertia(machine.rows.at(x + one)) for one in (-step, step)]
+    slope = machine.inertia_slope(machine.rows.at(x))
+    assert slope == pytest.approx((ends[1] - ends[0]) / (2.0 * step), abs=1e-7)
+
+
+def test_a_table_that_begins_elsewhere_repeats_from_there():
+    table = Tabled(lambda x: np.array([x - 1.0]), [1.0, 1.0 + TURN], 1e-13)
+    x = np.array([0.5, 1.5, 1.0 + TURN + 0.25])
+    away = [TURN - 0.5, 0.5, 0.25]
+    assert table.at(x)[0] == pytest.approx(away, abs=1e-12)
+    assert [table(one)[0] for one in x.tolist()] == pytest.approx(away, abs=1e-12)

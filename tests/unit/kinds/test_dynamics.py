@@ -319,3 +319,20 @@ def test_a_mechanism_that_has_no_inertia_at_a_dead_centre_is_refused_there(tmp_p
     # without a load the motor idles: net works are nothing, but the energies balance
     assert found.facts["dynamics.energy_residue"] < 1e-8
     assert found.study_findings == ()
+
+
+def test_the_mean_power_is_the_work_over_the_time():
+    found = nail(5)
+    power, t = found.columns["power_w"], found.columns["t_s"]
+    assert found.facts["dynamics.power_w.mean"] == pytest.approx(
+        np.trapezoid(power, t) / t[-1], rel=1e-3
+    )
+
+
+def test_friction_takes_power_also_where_teeth_are_driven():
+    changes = {"load": [{"on": "wheel2", "formula": "8 - 9*cos(phi1)"}], "friction.flank": 0.1}
+    own = {"dynamics.inertia_kg_m2": [1e-4, 1e-4], "drive.speed_rpm": 10, "output.studies": []}
+    columns = study("ellipse", {**own, **changes}).columns
+    assert columns["torque_mesh_nm"].min() < -0.5
+    assert columns["torque_lost_nm"].min() > -1e-9
+    assert columns["torque_lost_nm"][columns["torque_mesh_nm"] < -0.5].max() > 1e-3

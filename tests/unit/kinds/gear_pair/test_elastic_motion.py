@@ -179,3 +179,40 @@ def test_a_pair_that_stops_in_an_early_turn_is_stated_up_to_there():
     stopped = np.radians(found.facts["dynamics.stopped_deg"])
     assert 40.0 * ratio * stopped == pytest.approx(energy, rel=0.1)  # teeth give a little
     assert "stalls" in [one.code for one in found.study_findings]
+
+
+def test_angles_and_loads_of_the_driven_wheel_are_those_of_its_own_motion():
+    load = [{"on": "wheel2", "formula": "15*omega2"}]
+    changes = {"load": load, "dynamics": {**ELASTIC, "turns": 1}}
+    made = gc.build(design("circular", **changes))
+    columns, ratio = made.study("dynamics").columns, made.law.ratio(np.zeros(1))[0]
+    w1, w2 = columns["omega1_rad_s"], columns["omega2_rad_s"]
+    assert abs(ratio - 1.0) > 0.1
+    assert w2 == pytest.approx(ratio * w1, rel=2e-2)
+    # at the driver; the teeth carry it
+    assert columns["torque_load_nm"] == pytest.approx(15.0 * w2 * w2 / w1, rel=1e-9)
+    assert columns["torque_mesh_nm"].mean() == pytest.approx(15.0 * w2.mean(), rel=1e-3)
+    nominal = ratio * columns["phi1_deg"]
+    assert nominal - columns["phi2_deg"] == pytest.approx(np.degrees(columns["lag_rad"]), abs=1e-9)
+
+
+def test_a_flywheel_turns_with_the_driver_of_elastic_teeth():
+    motor = {"type": "linear", "start_torque_nm": 500, "idle_rpm": 90}
+
+    def natural(driver: float, flywheel: float) -> float:
+        own = {**ELASTIC, "inertia_kg_m2": [driver, 0.03], "turns": 1}
+        changes = {"dynamics": own, "motor": {**motor, "flywheel_kg_m2": flywheel}}
+        facts = gc.build(design("circular", **changes)).study("dynamics").facts
+        return facts["dynamics.natural_frequency_hz.max"]
+
+    assert natural(0.005, 0.015) == pytest.approx(natural(0.02, 0.0), rel=1e-6)
+    assert natural(0.005, 0.0) > 1.01 * natural(0.02, 0.0)
+
+
+def test_the_frequency_of_the_teeth_is_their_number_times_the_speed():
+    slowly = slow("circular", 0.0)
+    low, teeth = slowly.facts["dynamics.natural_frequency_hz.min"], slowly.result.pair.teeth[0]
+    changes = {"drive.speed_rpm": 0.95 * 60.0 * low / teeth, "dynamics.turns": 1}
+    made = gc.build(design("circular", **changes)).study("dynamics")
+    (told,) = (one for one in made.study_findings if one.code == "resonance")
+    assert told.value == pytest.approx(0.95, abs=0.015)
