@@ -268,6 +268,27 @@ class MissingExtraError(GearcamError, ImportError):
         wanted = packages or f'"gearcam[{extra}]"'
         super().__init__(f"{what} need a library that is not installed: pip install {wanted}")
 
+    @classmethod
+    def unless(cls, *libraries: str, what: str, extra: str) -> None:
+        """Raise the error unless some libraries are installed.
+
+        Parameters
+        ----------
+        *libraries : str
+            Names by which they are imported.
+        what, extra : str
+            See above.
+
+        Raises
+        ------
+        MissingExtraError
+            If one is not.
+        """
+        from importlib.util import find_spec  # not at every start
+
+        if not all(map(find_spec, libraries)):
+            raise cls(what, extra)
+
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self.what, self.extra, self.packages)
 

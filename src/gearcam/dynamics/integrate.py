@@ -178,16 +178,6 @@ class Motion(ShortRepr):
         inner = np.array([one.low for one in self.pieces[1:]])
         return np.searchsorted(inner, x, side="right")
 
-    def then(self, later: Motion) -> Motion:
-        """Return this motion with one that follows it."""
-        return replace(
-            later,
-            pieces=self.pieces + later.pieces,
-            switches=self.switches + later.switches,
-            evaluations=self.evaluations + later.evaluations,
-            steps=self.steps + later.steps,
-        )
-
 
 @dataclass(frozen=True, kw_only=True)
 class Integrator(ShortRepr):

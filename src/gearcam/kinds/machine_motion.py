@@ -74,13 +74,10 @@ def demand(design: Any, speed: float | None, key: str) -> None:
     MissingExtraError
         If scipy is not installed.
     """
-    from importlib.util import find_spec
-
     problem = _problem(design.motor, design.dynamics.run, speed, key)
     if problem is not None:
         raise DesignError([replace(problem, file=design.source)])
-    if find_spec("scipy") is None:
-        raise MissingExtraError("dynamics", "dynamics")
+    MissingExtraError.unless("scipy", what="dynamics", extra="dynamics")
 
 
 def _problem(motor: MotorSpec, run: str, speed: float | None, key: str) -> Problem | None:
@@ -369,7 +366,6 @@ class MachineRun(ShortRepr):
             See `columns`.
         """
         motion, spec = self.motion, self.spec
-        (slow_at, slow), (fast_at, fast) = motion.speeds
         steady = spec.run == REGIME
         works = dict(zip(("motor", "load", "lost"), motion.works, strict=True))
         power = columns["power_w"]
@@ -381,16 +377,7 @@ class MachineRun(ShortRepr):
         return {
             "run": Fact(spec.run, "motion", text=self._words, shown=True),
             "motor": Fact(self.design.motor.type, "motor", shown=True),
-            "speed_rpm": {"mean": _rpm(slow, "speed of the driver", "")}
-            if motion.motor is None
-            else {
-                "mean": _rpm(motion.mean_speed, "mean speed", "half of least and largest"),
-                "over_time": _rpm(_over_time(motion), "mean speed over time", ""),
-                "min": _rpm(slow, "least speed", self.place(slow_at)),
-                "max": _rpm(fast, "largest speed", self.place(fast_at)),
-            }
-            if steady
-            else self._speeds(),
+            "speed_rpm": self._speeds(),
             "irregularity": Fact(
                 motion.irregularity,
                 "irregularity, (max - min)/mean",
@@ -430,10 +417,19 @@ class MachineRun(ShortRepr):
         }
 
     def _speeds(self) -> Tree:
-        """Return the speeds of a run that is no regime."""
+        """Return the speeds as facts: an even one, those of a regime, or of another run."""
         motion, ends = self.motion, np.array(self.motion.ends)
+        (slow_at, slow), (fast_at, fast) = motion.speeds
+        if motion.motor is None:
+            return {"mean": _rpm(slow, "speed of the driver", "")}
+        if self.spec.run == REGIME:
+            return {
+                "mean": _rpm(motion.mean_speed, "mean speed", "half of least and largest"),
+                "over_time": _rpm(np.ptp(ends) / motion.lasts, "mean speed over time", ""),
+                "min": _rpm(slow, "least speed", self.place(slow_at)),
+                "max": _rpm(fast, "largest speed", self.place(fast_at)),
+            }
         first, last = motion.speed(ends).tolist()
-        fast_at, fast = motion.speeds[1]
         if motion.stopped is not None:
             last = 0.0
         return {
@@ -495,14 +491,8 @@ class MachineRun(ShortRepr):
         return Chart(title=title, x=self.axis, y=y, lines=made, marks=marks)
 
 
-def _over_time(motion: MachineMotion) -> float:
-    """Return the mean speed over the time of a motion, rad/s."""
-    low, high = motion.ends
-    return (high - low) / motion.lasts
-
-
 def _rpm(omega: float, label: str, place: str) -> Fact:
-    return Fact(omega / RPM.factor, label, place=place, unit="rpm", shown=True)
+    return Fact(float(omega / RPM.factor), label, place=place, unit="rpm", shown=True)
 
 
 _WORDS: Final = {

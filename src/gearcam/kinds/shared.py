@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -68,6 +68,32 @@ def forces_study(compute: str) -> Study:
         table="forces",
         compute=deferred(compute),
         demand=deferred("gearcam.kinds.under_load:demand"),
+    )
+
+
+def dynamics_study(compute: str, demand: str, *, speed: str, **more: Any) -> Study:
+    """Return the study of what is in motion: a machine, teeth, a follower.
+
+    Parameters
+    ----------
+    compute, demand : str
+        What computes it, and what refuses designs without it, as `deferred` names them.
+    speed : str
+        Dotted key of the speed of the driver.
+    **more
+        What else its entry has (see `Study`).
+    """
+    return Study(
+        name="dynamics",
+        key="dynamics",
+        doc="Compute a machine, teeth or a follower in motion; write DIR/NAME/dynamics.csv.",
+        done="computed",
+        table="dynamics",
+        compute=deferred(compute),
+        demand=deferred(demand),
+        alike=False,
+        elsewhere={"speed": speed},
+        **more,
     )
 
 

@@ -108,15 +108,6 @@ def test_only_what_is_wanted_is_kept() -> None:
     assert made.at([15.0])[0, 0] == pytest.approx(math.cos(15.0), abs=1e-7)
 
 
-def test_motions_follow_each_other() -> None:
-    modes = {"swing": Mode(swing)}
-    first = integrator()(modes, ("swing", [1.0, 0.0]), [0.0, 2.0])
-    both = first.then(integrator()(modes, ("swing", first.end), [2.0, 5.0]))
-    x = np.linspace(0.0, 5.0, 30)
-    assert both.at(x)[0] == pytest.approx(np.cos(x), abs=1e-6)
-    assert both.steps > first.steps
-
-
 def test_a_stiff_mode_begins_with_steps_of_its_own() -> None:
     """From rest nothing tells how fast a spring is, nor does the flight before it."""
     seen: list[float] = []

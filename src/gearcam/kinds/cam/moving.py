@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from functools import cached_property, partial
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -68,8 +67,7 @@ def demand(design: Any) -> None:
     faults = _faults(design)
     for key, what, near in faults:
         raise DesignError([Problem(what, file=design.source, key=key, allowed=near)])
-    if not find_spec("scipy"):
-        raise MissingExtraError("dynamics", "dynamics")
+    MissingExtraError.unless("scipy", what="dynamics", extra="dynamics")
 
 
 def _faults(design: Any) -> list[tuple[str, str, str]]:

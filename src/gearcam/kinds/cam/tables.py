@@ -31,7 +31,7 @@ from gearcam.base.registry import deferred
 from gearcam.base.rules import Breach, needs
 from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, pose_param, studies_param
 from gearcam.dynamics.integrate import METHODS
-from gearcam.kinds.shared import ACCURACY, forces_study
+from gearcam.kinds.shared import ACCURACY, dynamics_study, forces_study
 from gearcam.parts.blank import OPENING_RULES, WheelBlank, least_metal, widening_rules
 from gearcam.results.kind import Study, studies_of
 
@@ -56,17 +56,11 @@ STUDIES: Final = studies_of(
         many=False,
     ),
     forces_study(f"{_HERE}.forces:study_forces"),
-    Study(
-        name="dynamics",
-        key="dynamics",
-        doc="Compute a machine, teeth or a follower in motion; write DIR/NAME/dynamics.csv.",
-        done="computed",
-        table="dynamics",
+    dynamics_study(
+        f"{_HERE}.dynamics:study_dynamics",
+        f"{_HERE}.moving:demand",
+        speed="drive.speed_rpm",
         options={"stiffness_n_mm": "train-stiffness", "stiffness_nm_rad": "swing-stiffness"},
-        alike=False,
-        elsewhere={"speed": "drive.speed_rpm"},
-        compute=deferred(f"{_HERE}.dynamics:study_dynamics"),
-        demand=deferred(f"{_HERE}.moving:demand"),
     ),
     Study(
         name="precision",

@@ -20,7 +20,7 @@ from gearcam.dynamics.settings import DYNAMICS, VIBRATION, PairDynamicsSpec
 from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.gears.subject import KIND as TEETH
 from gearcam.kinds.gear_pair.load_settings import StressSpec
-from gearcam.kinds.shared import ACCURACY, AccuracySpec, ForcesSpec, GoalSpec
+from gearcam.kinds.shared import ACCURACY, AccuracySpec, ForcesSpec, GoalSpec, dynamics_study
 from gearcam.laws.ratio import LAWS
 from gearcam.mechanics.drive import DriveSpec
 from gearcam.mechanics.friction import WheelFrictionSpec
@@ -86,16 +86,8 @@ STUDIES: Final = studies_of(
         options={"teeth": "tooth"},
         repeats=("contact-pressure",),  # with the true shares
     ),
-    Study(
-        name="dynamics",
-        key="dynamics",
-        doc="Compute a machine, teeth or a follower in motion; write DIR/NAME/dynamics.csv.",
-        done="computed",
-        table="dynamics",
-        compute=deferred(f"{_HERE}.dynamics:study_dynamics"),
-        demand=deferred(f"{_HERE}.dynamics:demand"),
-        alike=False,
-        elsewhere={"speed": "drive.speed_rpm"},
+    dynamics_study(
+        f"{_HERE}.dynamics:study_dynamics", f"{_HERE}.dynamics:demand", speed="drive.speed_rpm"
     ),
     ACCURACY,
 )

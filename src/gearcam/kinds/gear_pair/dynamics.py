@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import partial
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 from gearcam.base.errors import DesignError, MissingExtraError, Problem
@@ -72,8 +71,8 @@ def _demand_elastic(design: Any) -> None:
     ):
         what, key = "0: a shaft of elastic teeth has no inertia", "dynamics.inertia_kg_m2"
         raise DesignError([Problem(what, file=source, key=key, allowed="above 0 for both shafts")])
-    if spec.finite_elements and find_spec("skfem") is None:
-        raise MissingExtraError("stiffness by finite elements", "stress")
+    if spec.finite_elements:
+        MissingExtraError.unless("skfem", what="stiffness by finite elements", extra="stress")
 
 
 def motion_of(result: GearPairResult, progress: Progress) -> PairRun:

@@ -45,10 +45,10 @@ _IN_STEP: Final = np.array([0.2, 0.4, 0.6, 0.8, 1.0])
 """Places within a step of the integration at which largest and least values are looked for."""
 
 _LONG: Final = 5.0
-"""Run time, s, from which its estimate is told."""
+"""Run time, s, above which its estimate is printed."""
 
 _JUMPS: Final = 0.05
-"""Error of the smooth stiffness, over its mean, from which it is told."""
+"""Error of the smooth stiffness, over its mean, above which it is printed."""
 
 _TURN: Final = 2.0 * math.pi
 
@@ -322,9 +322,7 @@ class ElasticRun(PairRun):
         run = self._runs[0]
         pieces, high = run.motion.pieces, run.motion.place
         low = max(pieces[0].low, high - self.machine.period)
-        own = self.machine.knots[:-1]
-        turns = np.arange(math.ceil(high / self.machine.period) + 1)
-        knots = np.add.outer(self.machine.period * turns, own).ravel()
+        knots = self.machine.knots_over(math.ceil(high / self.machine.period) + 1)
         knots = np.concatenate([knots, [place for place, _, _ in run.motion.switches]])
         inner = knots[(knots > low) & (knots < high)]
         turned = self.machine.period * math.floor(low / self.machine.period + 1e-9)
@@ -455,26 +453,10 @@ class ElasticRun(PairRun):
     def charts(self, columns: Any) -> dict[str, Chart]:
         """Return the charts of the study."""
         charts = super().charts(columns)
-        x, values = np.degrees(self.motion.places), self.motion.values
-
-        def over(name: str, title: str, y: str, label: str, given: Array) -> None:
-            charts[name] = Chart(
-                title=title,
-                x=self.axis,
-                y=y,
-                lines=(Line(label=label, x=x, y=given),),
-                marks=charts["mesh_torque"].marks,
-            )
-
-        lag = values["lag"] / ARCSEC.factor
-        over(
-            "mesh_torque",
-            "Torque of the teeth",
-            "torque, N m",
-            "on the driven wheel",
-            values["mesh"],
-        )
-        over("lag", "Lag of the driven wheel", "lag, arcsec", "lag", lag)
+        fine, values = {"phi1_deg": np.degrees(self.motion.places)}, self.motion.values
+        mesh, lag = {"on the driven wheel": values["mesh"]}, {"lag": values["lag"] / ARCSEC.factor}
+        charts["mesh_torque"] = self.chart(fine, "Torque of the teeth", "torque, N m", mesh)
+        charts["lag"] = self.chart(fine, "Lag of the driven wheel", "lag, arcsec", lag)
         charts["spectrum"] = self._spectrum()
         hits = [one for one in self.motion.lost_contact if one.onto]
         if hits:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache, partial
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Final
 
 from gearcam.base.errors import MissingExtraError
@@ -48,8 +47,7 @@ class MethodLadder:
         MissingExtraError
             If scipy is not installed.
         """
-        if not find_spec("scipy"):
-            raise MissingExtraError("dynamics", "dynamics")
+        MissingExtraError.unless("scipy", what="dynamics", extra="dynamics")
         from gearcam.dynamics.trials import ORDERS
 
         compared = _comparison()

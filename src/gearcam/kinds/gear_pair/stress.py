@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -67,8 +66,7 @@ def demand(design: Any) -> None:
     if design.steps.count > 1:
         what, near = "stress of stepped wheels is not computed", "1"
         raise DesignError([Problem(what, file=design.source, key="steps.count", allowed=near)])
-    if not (find_spec("scipy") and find_spec("skfem")):
-        raise MissingExtraError("stresses", "stress")
+    MissingExtraError.unless("scipy", "skfem", what="stresses", extra="stress")
 
 
 def study_stress(result: GearPairResult, progress: Progress) -> StudyResult:

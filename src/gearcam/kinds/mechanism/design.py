@@ -35,7 +35,7 @@ from gearcam.kinds.mechanism.asked import TABLES, DwellSpec, IntervalSpec, Stret
 from gearcam.kinds.mechanism.drives import CompareSpec, MachineDrive
 from gearcam.kinds.mechanism.keys import NAME, Sort, WithNames, named
 from gearcam.kinds.mechanism.tolerances import MachinePrecisionSpec, ToleranceSpec
-from gearcam.kinds.shared import ACCURACY, AccuracySpec, ForcesSpec, GoalSpec
+from gearcam.kinds.shared import ACCURACY, AccuracySpec, ForcesSpec, GoalSpec, dynamics_study
 from gearcam.mechanics.gravity import GravitySpec
 from gearcam.mechanics.motor import MotorSpec
 from gearcam.results.kind import Kind, Study, studies_of
@@ -89,16 +89,10 @@ STUDIES: Final = studies_of(
         demand=deferred(f"{_HERE}.balance:demand"),
         repeats=("loads-unused",),
     ),
-    Study(
-        name="dynamics",
-        key="dynamics",
-        doc="Compute a machine, teeth or a follower in motion; write DIR/NAME/dynamics.csv.",
-        done="computed",
-        table="dynamics",
-        compute=deferred(f"{_HERE}.dynamics:study_dynamics"),
-        demand=deferred(f"{_HERE}.dynamics:demand"),
-        alike=False,
-        elsewhere={"speed": "drive[0].speed_rpm"},
+    dynamics_study(
+        f"{_HERE}.dynamics:study_dynamics",
+        f"{_HERE}.dynamics:demand",
+        speed="drive[0].speed_rpm",
         repeats=("loads-unused",),
     ),
     ACCURACY,

@@ -382,7 +382,7 @@ def test_a_jump_of_velocity_is_refused() -> None:
 
 
 def test_without_scipy_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(moving, "find_spec", lambda _: None)
+    monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
     with pytest.raises(gc.MissingExtraError, match=r"gearcam\[dynamics\]"):
         studied(TRAIN)
 
