@@ -31,8 +31,8 @@ _SETTLED: Final = 40
 _WINDOW: Final = 20
 """Steps over which its work is looked at."""
 
-_WEIGHT: Final = 1.3
-"""Time of an evaluation in LSODA, with all that belongs to it, over that in DOP853."""
+_WEIGHT: Final = 2.0
+"""Time of an evaluation in LSODA, with all that belongs to it, over that in DOP853: 1.0 to 1.9."""
 
 
 class MethodChoice:

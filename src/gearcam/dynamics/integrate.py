@@ -25,7 +25,7 @@ from gearcam.dynamics.choice import MethodChoice
 from gearcam.numeric.arrays import Array
 
 METHODS: Final = ("auto", "radau", "bdf", "lsoda", "dop853")
-"""Methods by name: `auto` is DOP853 or Radau, whichever is faster there."""
+"""Methods by name: `auto` is DOP853 or LSODA, whichever is faster there."""
 
 _CLASSES: Final = {"radau": "Radau", "bdf": "BDF", "lsoda": "LSODA", "dop853": "DOP853"}
 

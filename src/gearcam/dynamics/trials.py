@@ -9,7 +9,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Final, NamedTuple
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
 
 import numpy as np
 
@@ -36,15 +38,15 @@ _TRUE: Final = 1e-11
 
 _PLACES: Final = 200
 
-ORDERS: Final = {"auto": 8.0, "radau": 5.0, "bdf": 5.0, "lsoda": 8.0, "dop853": 8.0}
-"""Expected orders in the number of evaluations; of those that change it, the largest in use."""
 
-
-class Trial(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Trial:
     """A machine and a stretch of its motion.
 
-    Attributes
+    Parameters
     ----------
+    what : str
+        What it is.
     pair : StiffPair
         The machine.
     start : StiffState
@@ -53,6 +55,7 @@ class Trial(NamedTuple):
         Driver angle at the end.
     """
 
+    what: str
     pair: StiffPair
     start: StiffState
     end: float
@@ -66,24 +69,35 @@ class Trial(NamedTuple):
         width = run.motion.place - self.start.phi1
         return run.states(self.start.phi1 + width * np.linspace(0.02, 1.0, _PLACES))[2]
 
-    def true(self) -> Array:
-        """Return the lags of a motion that is as good as exact."""
+    @cached_property
+    def _true(self) -> Array:
         return self.lags(self.run("dop853", _TRUE))
+
+    def measured(self, run: StiffRun) -> tuple[float, int]:
+        """Return the error of a motion, and its number of evaluations.
+
+        The error is the root mean square of that of the lag, over the largest lag.
+        """
+        missed = self.lags(run) - self._true
+        error = np.sqrt(np.mean(missed**2)) / np.abs(self._true).max()
+        return float(error), run.motion.evaluations
 
 
 def trials() -> dict[str, Trial]:
     """Return the machines by name."""
     omega = math.sqrt(_K * (1.0 / _J1 + 1.0 / _J2))
-    half = math.pi / omega + _BACKLASH / _ENTERING
+    free = _W * _PERIODS * _TURN / omega
+    rattle = _W * _IMPACTS * (math.pi / omega + _BACKLASH / _ENTERING)
+    plain, parting = _even(0.0), _even(_BACKLASH)
     driven = _machine(lambda _, w: 60.0 * (_W - w))
     slow = _machine(lambda _, w: 1e3 * (_W / _SLOWER - w))
     return {
-        "free": Trial(_even(0.0), StiffState(0.0, _W, 1e-4), _W * _PERIODS * _TURN / omega),
+        "free": Trial("50 free periods", plain, StiffState(0.0, _W, 1e-4), free),
         "rattle": Trial(
-            _even(_BACKLASH), StiffState(0.0, _W, 0.5 * _BACKLASH, _ENTERING), _W * _IMPACTS * half
+            "20 impacts", parting, StiffState(0.0, _W, 0.5 * _BACKLASH, _ENTERING), rattle
         ),
-        "driven": Trial(driven, driven.resting(0.0, _W), _TURN / 6.0),
-        "slow": Trial(slow, slow.resting(0.0, _W / _SLOWER), _TURN / 6.0),
+        "driven": Trial("180 rpm, 60 deg", driven, driven.resting(0.0, _W), _TURN / 6.0),
+        "slow": Trial("10 rpm, 60 deg", slow, slow.resting(0.0, _W / _SLOWER), _TURN / 6.0),
     }
 
 
@@ -124,39 +138,3 @@ def _table(rows: Callable[[Array], list[Array | float]]) -> Tabled:
         return np.array([np.broadcast_to(one, x.shape) for one in rows(x)])
 
     return Tabled(functions, np.array([0.0, _TURN]), 1e-12)
-
-
-class Comparison:
-    """Errors and work of methods on all trials."""
-
-    def __init__(self) -> None:
-        self.trials = trials()
-        self._true = {name: trial.true() for name, trial in self.trials.items()}
-
-    def run(self, method: str, rtol: float) -> dict[str, StiffRun]:
-        """Return the motions by a `method`, to a tolerance `rtol`, by trial."""
-        return {name: trial.run(method, rtol) for name, trial in self.trials.items()}
-
-    def error(self, name: str, run: StiffRun) -> float:
-        """Return the error of a motion.
-
-        Parameters
-        ----------
-        name : str
-            Of the trial.
-        run : StiffRun
-            Its motion.
-
-        Returns
-        -------
-        float
-            In the mean square of the lag, over the largest lag.
-        """
-        true = self._true[name]
-        missed = self.trials[name].lags(run) - true
-        return float(np.sqrt(np.mean(missed**2)) / np.abs(true).max())
-
-    def measured(self, runs: dict[str, StiffRun]) -> tuple[float, int]:
-        """Return the largest error of the motions, and the number of evaluations of all."""
-        errors = [self.error(name, run) for name, run in runs.items()]
-        return max(errors), sum(run.motion.evaluations for run in runs.values())

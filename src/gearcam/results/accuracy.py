@@ -32,6 +32,9 @@ REPEATS: Final = 5
 
 """Files of the command ``accuracy``."""
 
+_Run = tuple[str, float]
+"""Name of a method, and a level."""
+
 _FITTED: Final = 3
 """Number of rungs to which the order is fitted: the finest above rounding."""
 
@@ -44,6 +47,8 @@ class Rung(ShortRepr):
     ----------
     stage : str
         Name of the stage.
+    by : str
+        Name of the method, if several are compared.
     level : float
         The resolution: intervals, points on a flank, or a chord tolerance in mm.
     own : bool
@@ -52,7 +57,7 @@ class Rung(ShortRepr):
         In the unit of the ladder.
     order : float or None
         Order of convergence in the number of points, from the rung before to this one; None for
-        the first rung, without more points, and below rounding.
+        the first rung, without more points, below rounding, and where none is expected.
     seconds : float
         Median run time.
     points : int
@@ -60,6 +65,7 @@ class Rung(ShortRepr):
     """
 
     stage: str
+    by: str
     level: float
     own: bool
     error: float
@@ -92,16 +98,33 @@ class Accuracy(ShortRepr):
     refused: Mapping[tuple[str, float], str]
     repeat: int
 
-    def of(self, stage: str) -> tuple[Rung, ...]:
-        """Return the rungs of a `stage`, from coarse to fine."""
-        return tuple(rung for rung in self.rungs if rung.stage == stage)
+    def of(self, stage: str, by: str | None = None) -> tuple[Rung, ...]:
+        """Return the rungs of a stage, from coarse to fine.
+
+        Parameters
+        ----------
+        stage : str
+            Name of the stage.
+        by : str, optional
+            A method, if several are compared; that of gearcam by default.
+
+        Returns
+        -------
+        tuple of Rung
+        """
+        by = self.ladders[stage].by if by is None else by
+        return tuple(rung for rung in self.rungs if (rung.stage, rung.by) == (stage, by))
 
     def order(self, stage: str) -> float | None:
         """Return the order of convergence of a `stage`, fitted to its finest rungs above rounding.
 
-        None if fewer than two rungs are above rounding or have different numbers of points.
+        None if none is expected, or fewer than two rungs are above rounding or have different
+        numbers of points.
         """
-        rungs = [rung for rung in self.of(stage) if rung.error > self.ladders[stage].rounding]
+        ladder = self.ladders[stage]
+        if ladder.order is None:
+            return None
+        rungs = [rung for rung in self.of(stage) if rung.error > ladder.rounding]
         points, errors = np.log(
             [(float(rung.points), rung.error) for rung in rungs[-_FITTED:]] or [(1.0, 1.0)]
         ).T
@@ -114,24 +137,32 @@ class Accuracy(ShortRepr):
         runs = f"median of {self.repeat} run{'s' * (self.repeat > 1)}"
         yield f"error against run time, {runs}; * as used by gearcam"
         for stage, ladder in self.ladders.items():
-            order = self.order(stage)
-            slope = "rounding" if order is None else f"order {order:.2f}"
-            slope += f", expected {formatted(ladder.order)}"
-            yield f"{stage}: error of {ladder.measured}; {slope}"
-            rows = [(ladder.refined, "", "error", "order", "time", "points")]
-            for rung in self.of(stage):
-                error = f"{rung.error:.2e} {ladder.unit}".rstrip()
-                fell = "" if rung.order is None else f"{rung.order:.2f}"
-                times = f"{1e3 * rung.seconds:.3f} ms"
-                mark = "*" if rung.own else ""
-                rows.append((formatted(rung.level), mark, error, fell, times, str(rung.points)))
-            yield from (f"  {row}" for row in lined_up(_right(rows)))
+            slope = ""
+            if ladder.order is not None:
+                order = self.order(stage)
+                slope = "; rounding" if order is None else f"; order {order:.2f}"
+                slope += f", expected {formatted(ladder.order)}"
+            yield f"{stage}: error of {ladder.measured}{slope}"
+            yield from (f"  {row}" for row in lined_up(_right([*self._cells(stage)])))
             for (whose, level), why in self.refused.items():
                 if whose == stage:
                     yield f"  {formatted(level)}: left out: {why}"
         for (whose, _), why in self.refused.items():
             if whose not in self.ladders:
                 yield f"{whose}: left out: {why}"
+
+    def _cells(self, stage: str) -> Iterator[tuple[str, ...]]:
+        """Yield the rows of the table of a stage, its head first."""
+        ladder = self.ladders[stage]
+        several, ordered = bool(ladder.others), ladder.order is not None
+        order = ("order",) * ordered
+        yield ("method",) * several + (ladder.refined, "", "error", *order, "time", "points")
+        for rung in (one for by in ladder.methods for one in self.of(stage, by)):
+            error = f"{rung.error:.2e} {ladder.unit}".rstrip()
+            fell = ("" if rung.order is None else f"{rung.order:.2f}",) * ordered
+            mark, times = "*" if rung.own else "", f"{1e3 * rung.seconds:.3f} ms"
+            cells = (formatted(rung.level), mark, error, *fell, times, str(rung.points))
+            yield (rung.by,) * several + cells
 
     @cached_property
     def columns(self) -> dict[str, Any]:
@@ -141,6 +172,7 @@ class Accuracy(ShortRepr):
         return {
             "stage": [rung.stage for _, rung in rows],
             "measured": [ladder.measured for ladder, _ in rows],
+            "method": [rung.by for _, rung in rows],
             "refined": [ladder.refined for ladder, _ in rows],
             "level": [rung.level for _, rung in rows],
             "own": [int(rung.own) for _, rung in rows],
@@ -148,7 +180,9 @@ class Accuracy(ShortRepr):
             "unit": [ladder.unit for ladder, _ in rows],
             "rounding": [ladder.rounding for ladder, _ in rows],
             "order": np.ma.masked_invalid(orders),
-            "order_expected": [ladder.order for ladder, _ in rows],
+            "order_expected": np.ma.masked_invalid(
+                [math.nan if ladder.order is None else ladder.order for ladder, _ in rows]
+            ),
             "time_s": [rung.seconds for _, rung in rows],
             "points": [rung.points for _, rung in rows],
         }
@@ -175,12 +209,14 @@ class Accuracy(ShortRepr):
     def _chart(self, stage: str) -> Chart:
         ladder, rungs = self.ladders[stage], self.of(stage)
         used = [rung for rung in rungs if rung.own]
+        label = ladder.by or "error"
 
         def line(label: str, some: Sequence[Rung], dots: bool) -> Line:
             x, y = np.array([(rung.seconds, rung.error) for rung in some]).T
             return Line(label=label, x=x, y=y, dots=dots)
 
-        lines = [line("error", rungs, False), line(f"levels: {ladder.refined}", rungs, True)]
+        lines = [line(label, rungs, False), line(f"levels: {ladder.refined}", rungs, True)]
+        lines += [line(by, self.of(stage, by), False) for by in ladder.others]
         lines += [line("as used by gearcam", used, True)] if used else []
         what = f"error of {ladder.measured}, {ladder.unit}".removesuffix(", ")
         return Chart(title=stage, x="run time, s", y=what, lines=tuple(lines), log="xy")
@@ -275,21 +311,21 @@ def accuracy(
                 raise
             refused[name, math.nan] = str(error)
     total, done = (count + 1) * len(ladders), itertools.count()
-    first: dict[str, dict[float, tuple[float, int]]] = {}
+    first: dict[str, dict[_Run, tuple[float, int]]] = {}
     for name, ladder in ladders.items():
         tell(name, next(done), total)
         first[name] = _first_round(name, ladder, refused)
-    samples = {name: {level: list[float]() for level in levels} for name, levels in first.items()}
+    samples = {name: {run: list[float]() for run in runs} for name, runs in first.items()}
     for number in range(count):
         for name, ladder in ladders.items():
             tell(name, next(done), total)
-            levels = [*first[name]]
-            # rotate the levels: the first one meets cold caches
-            cut = number % len(levels)
-            for level in levels[cut:] + levels[:cut]:
+            runs, methods = [*first[name]], ladder.methods
+            # rotate them: the first one meets cold caches
+            cut = number % len(runs)
+            for by, level in runs[cut:] + runs[:cut]:
                 start = time.perf_counter()
-                ladder.make(level)
-                samples[name][level].append(time.perf_counter() - start)
+                methods[by](level)
+                samples[name][by, level].append(time.perf_counter() - start)
     return Accuracy(
         result=result,
         ladders=ladders,
@@ -305,14 +341,15 @@ def accuracy(
 
 def _first_round(
     name: str, ladder: Ladder, refused: dict[tuple[str, float], str]
-) -> dict[float, tuple[float, int]]:
-    """Return error and points of every level of a ladder; record those that fail in `refused`."""
-    found, reason = dict[float, tuple[float, int]](), None
-    for level in ladder.levels:
-        try:
-            found[level] = ladder.measure(ladder.make(level))
-        except GearcamError as error:
-            refused[name, level], reason = str(error), error
+) -> dict[_Run, tuple[float, int]]:
+    """Return error and points of every run of a ladder; record those that fail in `refused`."""
+    found, reason = dict[_Run, tuple[float, int]](), None
+    for by, make in ladder.methods.items():
+        for level in ladder.levels:
+            try:
+                found[by, level] = ladder.measure(make(level))
+            except GearcamError as error:
+                refused[name, level], reason = str(error), error
     if reason is not None and not found:
         raise reason
     return found
@@ -321,23 +358,26 @@ def _first_round(
 def _rungs(
     name: str,
     ladder: Ladder,
-    found: Mapping[float, tuple[float, int]],
-    samples: Mapping[float, Sequence[float]],
+    found: Mapping[_Run, tuple[float, int]],
+    samples: Mapping[_Run, Sequence[float]],
 ) -> Iterator[Rung]:
-    """Yield the rungs of a ladder, from errors and points, and run times, by level."""
-    before: tuple[float, int] | None = None
-    for level, (error, points) in found.items():
+    """Yield the rungs of a ladder, from errors and points, and run times, by run."""
+    before: dict[str, tuple[float, int]] = {}
+    for (by, level), (error, points) in found.items():
         order = None
-        if before and points > before[1] and min(error, before[0]) > ladder.rounding:
-            order = math.log(before[0] / error) / math.log(points / before[1])
-        before = error, points
+        if by in before and ladder.order is not None:
+            coarser, fewer = before[by]
+            if points > fewer and min(error, coarser) > ladder.rounding:
+                order = math.log(coarser / error) / math.log(points / fewer)
+        before[by] = error, points
         yield Rung(
             stage=name,
+            by=by,
             level=level,
-            own=level == ladder.own,
+            own=by == ladder.by and level == ladder.own,
             error=error,
             order=order,
-            seconds=statistics.median(samples[level]),
+            seconds=statistics.median(samples[by, level]),
             points=points,
         )
 

@@ -12,7 +12,7 @@ Depends on results, solids and numeric.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -67,14 +67,18 @@ class Ladder:
         From coarse to fine.
     own : float or None
         The level that the program uses; None if it uses none of them.
-    order : float
-        Expected order of convergence in the number of points.
+    order : float or None
+        Expected order of convergence in the number of points; None if there is none.
     rounding : float
         Rounding error, in the unit of the error: below it there is no order.
     make : callable
         ``make(level)`` does the computation that is timed.
     measure : callable
         ``measure(made)`` returns the error of the result of `make` and its number of points.
+    by : str
+        Name of the method of `make`, if there are others.
+    others : mapping of str to callable
+        Other methods by name, like `make`: they are measured beside it.
     """
 
     refined: str
@@ -82,10 +86,17 @@ class Ladder:
     unit: str
     levels: Sequence[float]
     own: float | None
-    order: float
+    order: float | None
     rounding: float
     make: Callable[[float], Any]
     measure: Callable[[Any], tuple[float, int]]
+    by: str = ""
+    others: Mapping[str, Callable[[float], Any]] = field(default_factory=dict)
+
+    @property
+    def methods(self) -> dict[str, Callable[[float], Any]]:
+        """Its own method, and the others."""
+        return {self.by: self.make, **self.others}
 
 
 Ladders = Mapping[str, Callable[[Any], Ladder]]

@@ -73,7 +73,7 @@ def test_table_and_file_tell_the_same(design: str, capsys: pytest.CaptureFixture
     assert code == 0
     told = capsys.readouterr().out
     rows = pl.read_csv(folder / "accuracy.csv")
-    assert rows.columns[:5] == ["stage", "measured", "refined", "level", "own"]
+    assert rows.columns[:5] == ["stage", "measured", "method", "refined", "level"]
     assert rows["stage"].unique(maintain_order=True).to_list() == ["outline", "cam"]
     lines = iter(told.splitlines())
     for row in rows.iter_rows(named=True):
