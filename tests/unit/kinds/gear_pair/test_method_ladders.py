@@ -18,7 +18,7 @@ output = { files = ["csv"] }
 """
 ELASTIC = PAIR + "dynamics = { inertia_kg_m2 = [0.1, 0.1], stiffness_n_mm_um = 14 }\n"
 
-WORK = {"radau": 2.0, "lsoda": 1.2, "dop853": 1.0}
+WORK = {"radau": 2.0, "lsoda": 1.25, "dop853": 1.0}
 """Time of an evaluation with all that belongs to it, at least, over that in DOP853."""
 
 
@@ -44,4 +44,4 @@ def test_errors_fall_with_the_tolerance_and_no_method_beats_auto(trial: str) -> 
     assert len(others) == 12
     for rung in auto:
         better = [one for one in others if one.error < 0.9 * rung.error]
-        assert all(WORK[one.by] * one.points > 0.95 * rung.points for one in better), rung
+        assert all(WORK[one.by] * one.points > 0.9 * rung.points for one in better), rung
