@@ -66,9 +66,9 @@ def _demand_elastic(design: Any) -> None:
     if design.steps.count > 1:
         what, near = "elastic teeth of stepped wheels are not computed", "1, or rigid = true"
         raise DesignError([Problem(what, file=source, key="steps.count", allowed=near)])
-    if spec.inertia is not None and (
-        not spec.inertia[1] or not (spec.inertia[0] or design.motor.turns_evenly)
-    ):
+    motor = design.motor
+    turned = motor.turns_evenly or motor.flywheel
+    if spec.inertia is not None and not (spec.inertia[1] and (spec.inertia[0] or turned)):
         what, key = "0: a shaft of elastic teeth has no inertia", "dynamics.inertia_kg_m2"
         raise DesignError([Problem(what, file=source, key=key, allowed="above 0 for both shafts")])
     if spec.finite_elements:

@@ -22,6 +22,7 @@ from gearcam.dynamics.settings import VIBRATION
 from gearcam.dynamics.stiff import APART, COAST, StiffPair
 from gearcam.dynamics.tabled import Tabled
 from gearcam.kinds.gear_pair.pair_motion import PairRun
+from gearcam.kinds.gear_pair.stress import elasticity
 from gearcam.mechanics.wheel_load import WheelLoadSpec
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Line, MarkedPlace
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from gearcam.dynamics.motors import Motor
     from gearcam.dynamics.settings import PairDynamicsSpec
     from gearcam.dynamics.stiff import LostContact, StiffRun
+    from gearcam.kinds.gear_pair.elastic_pair import ElasticPair
     from gearcam.numeric.arrays import Array
     from gearcam.results.study import Progress
 
@@ -228,13 +230,17 @@ class ElasticRun(PairRun):
             samples = self._by_elements(phi1)
         return Smooth(phi1, samples, travel if self.machine.closed else None, positive=True)
 
-    def _by_elements(self, phi1: Array) -> Array:
-        """Return the stiffness by finite elements at driver angles, (n,), N m/rad."""
+    @cached_property
+    def _elements(self) -> ElasticPair:
+        """The wheels as finite elements, under the nominal torque."""
         from gearcam.kinds.gear_pair.elastic_pair import ElasticPair
 
         load = WheelLoadSpec(torque=1e3 * self._nominal)
-        pair = ElasticPair(self.result, self.progress, (load,))
-        entries = pair.entries(phi1)
+        return ElasticPair(self.result, self.progress, (load,))
+
+    def _by_elements(self, phi1: Array) -> Array:
+        """Return the stiffness by finite elements at driver angles, (n,), N m/rad."""
+        entries = self._elements.entries(phi1)
         if len(entries.phi1) < len(phi1):
             what = "teeth carry nothing at some phases: their stiffness is not known"
             raise InfeasibleError(what, where="pair", nearest="a larger contact ratio")
@@ -389,12 +395,14 @@ class ElasticRun(PairRun):
         values, natural = self.motion.values, self.pair.frequency(self.pair.places) / _TURN
         bent = values["lag"] / ARCSEC.factor
         arcs = self.motion.lost_contact
-        source = "given" if self._settings.stiffness is not None else "by finite elements"
+        given = self._settings.stiffness is not None
+        source = "given" if given else "by finite elements"
         stiffness = self.pair.table.at(self.pair.places)[2]
         mean, error = float(stiffness.mean()), self.stiffness.error
         jumps = f", jumps by {formatted(error, 2)}" if error > _JUMPS * mean else ""
         lost = f"{len(arcs)} arcs, {formatted(math.degrees(_sum(arcs)), 4)} deg together"
         return super().facts(columns) | {
+            **({} if given else elasticity(self._elements)),
             "run": Fact(self.spec.run, "motion", text=self._words, shown=True),
             "mesh_torque_nm": Fact(
                 extent(float(values["mesh"].min()), float(values["mesh"].max())),
@@ -418,6 +426,7 @@ class ElasticRun(PairRun):
             "lag_arcsec": Fact(
                 extent(float(bent.min()), float(bent.max())),
                 "lag of the driven wheel",
+                place="from the middle of the backlash",
                 unit="arcsec",
                 shown=True,
             ),

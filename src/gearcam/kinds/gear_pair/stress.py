@@ -292,7 +292,7 @@ def _stiffness(pair: ElasticPair, entries: Entries) -> dict[str, Any]:
 
 def _facts(pair: ElasticPair, entries: Entries, stressed: StressedPair, *, complete: bool) -> Tree:
     """Return the facts of the study."""
-    on_rack, design = pair.result.pair.on_rack, pair.result.design
+    on_rack = pair.result.pair.on_rack
     lag, unit = (entries.lag, "mm") if on_rack else (entries.lag / ARCSEC.factor, "arcsec")
     per = "n_mm" if on_rack else "nmm_rad"
     stiffness = pair.width * entries.stiffness
@@ -300,12 +300,7 @@ def _facts(pair: ElasticPair, entries: Entries, stressed: StressedPair, *, compl
     twice = entries.share[carrying & (entries.share >= 0.5)]
     low, high = (formatted(float(one), 4) for one in (lag.min(), lag.max()))
     held = [one for one in map(_held, pair.regions) if one is not None]
-    (first, one), (second, other) = design.material.elasticity
-    material = f"E {formatted(first)} and {formatted(second)} MPa, "
-    material += f"nu {formatted(one)} and {formatted(other)}, plane {pair.spec.plane}"
-    return {
-        "held": Fact(_held_on(pair), "wheels are held on", shown=True),
-        "material": Fact(material, "elasticity of the wheels", shown=True),
+    return elasticity(pair) | {
         "alone": Fact("yes", "each pair of teeth has the whole load", shown=True)
         if pair.spec.alone
         else None,
@@ -336,6 +331,17 @@ def _facts(pair: ElasticPair, entries: Entries, stressed: StressedPair, *, compl
         if twice.size
         else None,
         "complete": complete,
+    }
+
+
+def elasticity(pair: ElasticPair) -> Tree:
+    """Return as facts what the wheels are made of, and on what they are held."""
+    (first, one), (second, other) = pair.result.design.material.elasticity
+    material = f"E {formatted(first)} and {formatted(second)} MPa, "
+    material += f"nu {formatted(one)} and {formatted(other)}, plane {pair.spec.plane}"
+    return {
+        "held": Fact(_held_on(pair), "wheels are held on", shown=True),
+        "material": Fact(material, "elasticity of the wheels", shown=True),
     }
 
 

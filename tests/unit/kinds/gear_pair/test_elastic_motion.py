@@ -57,6 +57,7 @@ def test_by_finite_elements_a_slow_pair_lags_as_in_the_study_of_stress():
     lag = result.study("dynamics").facts["dynamics.lag_arcsec.max"]
     stress = result.study("stress").facts["stress.lag_arcsec.max"]
     assert lag == pytest.approx(stress, rel=0.02)
+    assert "E 206000" in str(result.study("dynamics").facts["dynamics.material"])
 
 
 def test_stiff_teeth_move_as_rigid_ones():
@@ -83,6 +84,20 @@ def test_an_even_motor_has_the_torque_that_keeps_the_mean_speed():
     assert found.columns["torque_motor_nm"] == pytest.approx(40.0, rel=1e-6)
     works = found.facts["dynamics.works_j"]
     assert works["motor"] == pytest.approx(works["load"] + works["lost"], rel=1e-3)
+
+
+def test_a_flywheel_is_inertia_of_the_driver_too():
+    motor = {"type": "constant", "flywheel_kg_m2": 50}
+    changes = {"motor": motor, "dynamics.turns": 1}
+    wheel = gc.build(design("ellipse", **changes, **{"dynamics.inertia_kg_m2": [0, 0.03]}))
+    changes["motor"] = {"type": "constant"}
+    shaft = gc.build(design("ellipse", **changes, **{"dynamics.inertia_kg_m2": [50, 0.03]}))
+    one, other = (found.study("dynamics").columns["lag_rad"] for found in (wheel, shaft))
+    assert one == pytest.approx(other, rel=1e-6)
+    with pytest.raises(DesignError, match="above 0 for both shafts"):
+        gc.build(design("ellipse", **changes, **{"dynamics.inertia_kg_m2": [0, 0.03]})).study(
+            "dynamics"
+        )
 
 
 def test_the_last_turn_is_stated_with_its_own_angles_and_time():
