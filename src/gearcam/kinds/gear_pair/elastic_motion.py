@@ -21,7 +21,7 @@ from gearcam.dynamics.settings import COAST as COASTING
 from gearcam.dynamics.settings import VIBRATION
 from gearcam.dynamics.stiff import APART, COAST, StiffPair
 from gearcam.dynamics.tabled import Tabled
-from gearcam.kinds.gear_pair.pair_motion import PairRun
+from gearcam.kinds.gear_pair.pair_motion import MovingPair, PairRun
 from gearcam.kinds.gear_pair.stress import elasticity
 from gearcam.mechanics.wheel_load import WheelLoadSpec
 from gearcam.numeric.piecewise import with_both_sides
@@ -343,6 +343,12 @@ class ElasticRun(PairRun):
     def mesh_torque(self, phi1: Array) -> Array:
         """Return the torque of the teeth on the driven wheel at driver angles, (n,), N m."""
         return self.motion.at(phi1)["mesh"]
+
+    def _most(self, moving: MovingPair) -> Array:
+        """Return angles, rad, at which the teeth may have most: also those of their vibrations."""
+        torque = np.abs(self.motion.values["mesh"])
+        summit = (torque[1:-1] >= torque[:-2]) & (torque[1:-1] > torque[2:])
+        return np.append(super()._most(moving), self.motion.places[1:-1][summit])
 
     @cached_property
     def places(self) -> Array:

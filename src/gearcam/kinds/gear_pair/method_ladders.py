@@ -34,7 +34,13 @@ def _trials() -> dict[str, Trial]:
 
 @dataclass(frozen=True)
 class MethodLadder:
-    """Methods on a machine that is the same for all designs (see `dynamics.trials`)."""
+    """Methods on a machine that is the same for all designs (see `dynamics.trials`).
+
+    Parameters
+    ----------
+    trial : str
+        Name of the machine.
+    """
 
     trial: str
 

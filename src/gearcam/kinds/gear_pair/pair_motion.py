@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
@@ -232,11 +233,18 @@ class PairRun(MachineRun):
 
     @cached_property
     def loaded(self) -> LoadedPair:
-        """The forces of the teeth at the places of the table; of one turn also where most."""
-        phi1, once = self.places, len(self.motion.knots) <= len(self.machine.knots)
+        """The forces of the teeth at the places of the table, and where they are most."""
         moving = MovingPair(self.result, self.mesh_torque)
-        whole = once and self.motion.stopped is None
-        return moving.loaded(np.union1d(phi1, moving.places()) if whole else phi1)
+        return moving.loaded(np.union1d(self.places, self._most(moving)))
+
+    def _most(self, moving: MovingPair) -> Array:
+        """Return angles, rad, at which the teeth may have most, in each turn."""
+        (low, high), period = self.motion.ends, self.machine.period
+        if self.motion.stopped is not None and high < period:
+            return self.places
+        turns = period * np.arange(math.ceil(high / period))
+        every = np.add.outer(turns, moving.places()).ravel()
+        return every[(every >= low) & (every <= high)]
 
     def columns(self) -> dict[str, Array]:
         """Return the columns of ``dynamics.csv``."""
