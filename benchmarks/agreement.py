@@ -124,7 +124,7 @@ def motions() -> bool:
 
 def main() -> int:
     """Compare all cases and print a line for each."""
-    agreed, bad = 0, 0
+    moved, agreed, bad = motions(), 0, 0
     for teeth, harmonics in CASES:
         text, start = formula(harmonics), time.perf_counter()
         made = peers.outlines(law_of(harmonics), 1.0, teeth)
@@ -146,7 +146,7 @@ def main() -> int:
         seconds = time.perf_counter() - start
         print(f"z = {teeth:3d}  {off:.1e} modules  {verdict}  {seconds:4.0f} s  {text}", flush=True)
     print(f"{agreed} agree within {AGREE:g} modules, {bad} do not")
-    return 0 if motions() and agreed >= FEWEST and not bad else 1
+    return 0 if moved and agreed >= FEWEST and not bad else 1
 
 
 if __name__ == "__main__":
