@@ -9,7 +9,7 @@
 # make needs      measure the cost of each kind of file; update performance.md
 # make growth     measure time and memory against the size of designs; write growth.md
 # make accuracy   measure error against run time of several methods; write accuracy.md
-# make peers      compare tooth flanks with those of another package
+# make peers      compare tooth flanks and motions with those of other packages
 # make fuzz       test with random designs: MORE="--count N --seed N ..." (--help lists more)
 # make compare    compare random designs with those of an older commit: BASE=COMMIT [N=50] [SEED=1]
 # make lock       renew requirements.lock

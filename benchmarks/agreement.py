@@ -1,9 +1,10 @@
-"""Flanks of ncgears and of gearcam, point by point: `make peers`.
+"""Flanks of ncgears and of gearcam, point by point, and motions of other packages: `make peers`.
 
 Both programs build closed laws ``phi2 = phi1 + harmonics`` with the same rack. The vertices of the
 outlines of ncgears lie on the flanks of gearcam within a millionth of a module. Tips and roots are
 not compared: they depend on the cutter, not on the law. The exit code is 1 if a case does not
-agree, if both build fewer than twenty cases, or if ncgears builds one that gearcam does not.
+agree, if both build fewer than twenty cases, or if ncgears builds one that gearcam does not; also
+if natural frequencies of openTorsion or a flying follower of EXUDYN differ (see `dynamics_cases`).
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+import dynamics_cases
 import gearcam
 import peers
 from gearcam.base.errors import InfeasibleError
@@ -111,9 +113,18 @@ def ours(text: str, teeth: int) -> tuple[Gear, Gear]:
     return gearcam.build(design).gears
 
 
+def motions() -> bool:
+    """Compare motions, print a line for each, and return whether they agree."""
+    made = dynamics_cases.against_peers()
+    for result in made:
+        verdict = "agree" if result.passed else "DIFFER"
+        print(f"{result.title[5:]}: {result.found}  {verdict}", flush=True)
+    return all(result.passed for result in made)
+
+
 def main() -> int:
     """Compare all cases and print a line for each."""
-    agreed, bad = 0, 0
+    moved, agreed, bad = motions(), 0, 0
     for teeth, harmonics in CASES:
         text, start = formula(harmonics), time.perf_counter()
         made = peers.outlines(law_of(harmonics), 1.0, teeth)
@@ -135,7 +146,7 @@ def main() -> int:
         seconds = time.perf_counter() - start
         print(f"z = {teeth:3d}  {off:.1e} modules  {verdict}  {seconds:4.0f} s  {text}", flush=True)
     print(f"{agreed} agree within {AGREE:g} modules, {bad} do not")
-    return 0 if agreed >= FEWEST and not bad else 1
+    return 0 if moved and agreed >= FEWEST and not bad else 1
 
 
 if __name__ == "__main__":

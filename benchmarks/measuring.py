@@ -17,7 +17,10 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 _UNCOMPILED = "PYTHONDONTWRITEBYTECODE"
-PACKAGES = ("gearcam", "numpy", "shapely", "ncgears", "pylinkage", "numba", "scipy", "sympy")
+PACKAGES = (
+    "gearcam", "numpy", "shapely", "ncgears", "pylinkage", "numba", "opentorsion", "exudyn",
+    "scipy", "sympy",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)

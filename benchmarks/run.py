@@ -13,6 +13,7 @@ import before_cases
 import cam_cases
 import cases
 import design_cases
+import dynamics_cases
 import law_cases
 import linkage_cases
 import load_cases
@@ -66,6 +67,7 @@ def main() -> int:
         load_cases.of_loads,
         load_cases.of_machines,
         load_cases.of_dynamics,
+        dynamics_cases.against_peers,
         sweep_cases.of_sweeps,
         design_cases.of_cams,
         before_cases.against_before,

@@ -28,6 +28,7 @@ SECTIONS = {
     "sweep": ["pyproject.toml", "--extra", "sweep"],
     "optimize": ["pyproject.toml", "--extra", "optimize"],
     "stress": ["pyproject.toml", "--extra", "stress"],
+    "dynamics": ["pyproject.toml", "--extra", "dynamics"],
     "test": ["--group", "test"],
     "lint": ["--group", "lint"],
     "bench": ["--group", "bench"],
