@@ -31,9 +31,13 @@ DIGITS = 32
 
 
 def told_by_text(design: Mapping[str, Any]) -> bool:
-    """Whether the text tells the plane cam: no rows, which may scatter, and no size to be found."""
+    """Whether the text tells the plane cam.
+
+    No rows, which may scatter, no size to be found, no lift that corrects an elastic train.
+    """
     motion, sizes = design.get("motion", {}), design.get("cam", {})
     plane = "type" in design.get("follower", {}) and "solve" not in sizes.values()
+    plane &= not design.get("drive", {}).get("polydyne", False)
     return plane and (isinstance(motion, list) or "lift" in motion)
 
 
