@@ -37,7 +37,7 @@ def told_by_text(design: Mapping[str, Any]) -> bool:
     """
     motion, sizes = design.get("motion", {}), design.get("cam", {})
     plane = "type" in design.get("follower", {}) and "solve" not in sizes.values()
-    plane &= not design.get("drive", {}).get("polydyne", False)
+    plane &= "polydyne" not in str(design.get("drive"))
     return plane and (isinstance(motion, list) or "lift" in motion)
 
 
