@@ -12,8 +12,7 @@ import pytest
 from scipy.optimize import brentq
 
 from gearcam.base.errors import InfeasibleError
-from gearcam.dynamics import follower_motion
-from gearcam.dynamics.follower import CONTACT, FLIGHT, ElasticFollower
+from gearcam.dynamics.follower import CONTACT, FLIGHT, RELAXED, ElasticFollower
 from gearcam.dynamics.follower_motion import Turn, chosen, settle
 from gearcam.dynamics.integrate import Integrator
 from gearcam.dynamics.periodic import Periodic, cells_of, elastic_jump, keeping_stiffness
@@ -243,8 +242,8 @@ def test_the_rise_of_constant_acceleration_is_exact_between_knots() -> None:
 
     integrate = Integrator(method="dop853", rtol=1e-6, atol=(2e-8, 1e-6, 1.0, 1.0))
     start = CONTACT, np.zeros(4)
-    with_knots = integrate(follower.modes, start, [0.0, half, 1.0])
-    without = integrate(follower.modes, start, [0.0, 1.0])
+    with_knots = integrate(follower.modes(0.0), start, [0.0, half, 1.0])
+    without = integrate(follower.modes(0.0), start, [0.0, 1.0])
     off, worse = (np.abs(one.at(x)[0] - closed(x)).max() for one in (with_knots, without))
     assert worse > 2.0 * off
     assert without.evaluations > 1.5 * with_knots.evaluations
@@ -352,7 +351,7 @@ def test_flights_that_repeat(shift: float) -> None:
     start = np.array([follower.rest(np.zeros(1))[0, 0], 0.0])
     turn = settle(follower, start, turns=40, tolerance=1e-8)
     assert turn.repeats
-    assert turn.start[0] == (CONTACT if shift == 0.0 else FLIGHT)
+    assert (turn.start[0] == CONTACT) == (shift == 0.0)
     first = turn.flights[0]
     width = (first.end - first.start) % TURN
     assert 0.1 < width < 3.0
@@ -367,19 +366,20 @@ def test_flights_that_repeat(shift: float) -> None:
 class Landed(Turn):
     """A turn whose impacts are the places of the landings."""
 
-    def _impact(self, x: float) -> float:
+    def _impact(self, x: float, mode: str | None) -> float:
+        assert mode == RELAXED
         return x
 
 
 def test_an_arc_over_the_end_of_the_turn_is_one() -> None:
     switches = [
-        (0.5, FLIGHT, CONTACT), (2.0, CONTACT, FLIGHT), (3.0, FLIGHT, CONTACT),
-        (5.0, CONTACT, FLIGHT),
+        (0.5, RELAXED, CONTACT), (2.0, CONTACT, FLIGHT), (2.1, FLIGHT, RELAXED),
+        (3.0, RELAXED, CONTACT), (5.0, CONTACT, FLIGHT), (5.1, FLIGHT, RELAXED),
     ]  # fmt: skip
-    motion: Any = SimpleNamespace(switches=switches, mode=FLIGHT)
+    motion: Any = SimpleNamespace(switches=switches, mode=RELAXED)
     turn = Landed(
-        follower=ONE, motion=motion, start=(FLIGHT, np.zeros(4)), method="radau", tolerance=1e-6,
-        turns=1, repeats=True, evaluations=0,
+        follower=ONE, motion=motion, start=(RELAXED, np.zeros(4)), method="radau", tolerance=1e-6,
+        turns=1, repeats=True,
     )  # fmt: skip
     arcs = [(one.start, one.end, one.impact) for one in turn.flights]
     assert arcs == [(5.0, 0.5, 0.5), (2.0, 3.0, 3.0)]
@@ -415,8 +415,9 @@ def test_pressed_from_above() -> None:
 
 
 def test_the_method_by_natural_periods() -> None:
-    assert chosen(TRAIN, "auto") == "radau"
-    assert chosen(replace(TRAIN, speed=1100.0 * RPM), "auto") == "dop853"
+    """TRAIN has 334.4 of them in a turn at 300 rpm."""
+    assert chosen(replace(TRAIN, speed=334.0 * RPM), "auto") == "radau"
+    assert chosen(replace(TRAIN, speed=335.0 * RPM), "auto") == "dop853"
     assert chosen(TRAIN, "lsoda") == "lsoda"
 
 
@@ -437,4 +438,26 @@ def test_the_error_is_that_of_the_periodic_motion() -> None:
 def test_a_turn_is_quick() -> None:
     """The spec's 0.3 s for one turn, on a machine that others use too."""
     assert isinstance(settle(TRAIN, Periodic(TRAIN).start, turns=1), Turn)
-    assert follower_motion.FOLLOWED == 100.0
+
+
+FLYING = replace(TRAIN, damping=(0.04, 0.01), speed=1300.0 * RPM)
+
+
+def test_the_end_of_a_flying_spring_relaxes_and_costs_no_more() -> None:
+    """Its rate is 25 natural frequencies: dop853 would be bound to it, and radau is not."""
+    start = np.array([-0.05, 0.0, -0.1, 0.0])
+    turn = settle(FLYING, start, turns=1, method="dop853", tolerance=1e-6)
+    exact = settle(FLYING, start, turns=1, method="radau", tolerance=1e-9)
+    assert {before for _, before, _ in turn.motion.switches} == {CONTACT, FLIGHT, RELAXED}
+    assert turn.motion.evaluations < 20_000
+    x = np.linspace(0.0, 1.5, 300)
+    assert turn.states(x)[0][2] == pytest.approx(exact.states(x)[0][2], abs=2e-5)
+    assert turn.flights[0].impact == pytest.approx(exact.flights[0].impact, rel=1e-5)
+    assert turn.energy_residue < 1e-4
+
+
+def test_what_does_not_repeat_is_given_up() -> None:
+    turn = settle(FLYING, Periodic(FLYING).start, turns=100)
+    assert not turn.repeats
+    assert 6 <= turn.turns < 40
+    assert settle(FLYING, Periodic(FLYING).start, turns=3).turns == 3

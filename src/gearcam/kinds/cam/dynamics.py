@@ -164,12 +164,6 @@ def _arc(moving: MovingCam, flight: Flight) -> str:
     return f"{moving.result.driver.symbol} = {low} to {high} deg"
 
 
-def _impact(moving: MovingCam) -> float:
-    """Return the largest speed of impact, in the unit of velocities; 0 without any."""
-    scale = _lift(moving)[0]
-    return scale * max((one.impact for one in moving.turn.flights), default=0.0)
-
-
 def _checked(moving: MovingCam, moment: Moment) -> MovingFollower:
     """Return what is checked."""
     turn, drive = moving.turn, moving.result.design.drive
@@ -177,19 +171,20 @@ def _checked(moving: MovingCam, moment: Moment) -> MovingFollower:
     dwells = _dwells(moving, moment)
     worst = max(dwells, key=lambda one: one[2], default=(0.0, 0.0, 0.0))
     low, high = (moving.result.driver.text(one) for one in worst[:2])
-    normal, least = moment.normal, math.nan
+    (scale, unit), normal, least = _lift(moving), moment.normal, math.nan
+    impacts = [scale * one.impact for one in turn.flights if not math.isnan(one.impact)]
     if not moving.held:
         least = float(np.nanmin(normal) / np.nanmean(normal))
     return MovingFollower(
         flights=[_arc(moving, one) for one in turn.flights],
-        impact=_impact(moving),
-        unit=f"{_lift(moving)[1]}/s",
+        impact=max(impacts, default=None),
+        unit=f"{unit}/s",
         stays=drive.words(moving.jump) if moving.jump else "",
         least=least,
         least_at=_at(moving, moment, int(np.nanargmin(normal))),
         residual=worst[2] / total,
         residual_at=f"dwell from {low} to {high}",
-        repeats=turn.repeats,
+        restless=0 if turn.repeats else turn.turns,
         energy_residue=turn.energy_residue,
         tolerance=turn.tolerance,
     )

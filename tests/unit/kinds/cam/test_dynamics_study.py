@@ -61,6 +61,14 @@ def test_beyond_its_jump_it_flies() -> None:
     assert found.value == pytest.approx(max(one["impact_mm_s"] for one in flights))
 
 
+def test_a_flight_beyond_the_turn_has_no_impact() -> None:
+    study = studied(TRAIN, {"drive.speed_rpm": 8000, "dynamics.turns": 1})
+    assert "impact_mm_s" not in fact(study, "lost")[-1]
+    many = studied(TRAIN, {"drive.speed_rpm": 30_000, "dynamics.turns": 1})
+    (found,) = [one for one in many.study_findings if one.code == "jump"]
+    assert found.value is None
+
+
 def eccentric(**changes: Any) -> gc.Design:
     """A lift e*(1 - cos(theta)) of 5 mm under a spring of 10 N/mm and 40 N, 0.5 kg."""
     more = {
@@ -390,7 +398,7 @@ def test_without_scipy_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> No
 def subject(**changes: Any) -> MovingFollower:
     plain: dict[str, Any] = {
         "flights": (), "impact": 0.0, "unit": "mm/s", "stays": "", "least": 0.5, "least_at": "at 1",
-        "residual": 0.001, "residual_at": "dwell", "repeats": True, "energy_residue": 1e-6,
+        "residual": 0.001, "residual_at": "dwell", "restless": 0, "energy_residue": 1e-6,
         "tolerance": 1e-6,
     }  # fmt: skip
     return MovingFollower(**plain | changes)
@@ -413,8 +421,8 @@ def test_findings_just_within_and_beyond(changes: dict[str, Any], found: list[st
 
 
 def test_turns_that_do_not_repeat_are_told() -> None:
-    (found,) = run_checks(MOVING, subject(flights=("a", "b"), impact=1.0, repeats=False), {})
-    assert "do not repeat" in found.message
+    (found,) = run_checks(MOVING, subject(flights=("a", "b"), impact=1.0, restless=8), {})
+    assert "After 8 turns it does not repeat itself yet" in found.message
     assert found.where == "a, and 1 more"
 
 
