@@ -91,7 +91,8 @@ _LEAST: Final = (
 def near_jump(moving: MovingFollower, limit: float) -> Iterator[Remark]:
     """Warn if a follower nearly leaves its cam: a little more speed or friction, and it does.
 
-    Looks at: least contact force of the moving follower, over the mean one.
+    Looks at: least contact force of the moving follower along the lift, over the mean one. A spring
+    that is solved for keeps this limit.
     """
     if not moving.flights and moving.least < limit:
         message = "The follower nearly leaves the cam: a stiffer spring or more preload holds it"

@@ -79,8 +79,9 @@ _NEARLY: Final = 0.02
 _SETTLED: Final = 4.6
 """Exponent of a vibration that is small: 1 %."""
 
-_STIFFEST: Final = 1e6
-"""Largest stiffness of a spring that is looked for, over the first."""
+_STIFFER: Final = 1.5
+"""Steps in which the stiffness of a spring is looked for; one far too stiff keeps less again of a
+mean force that grows with it."""
 
 _EXACT: Final = 1e-10
 """Relative tolerance of roots."""
@@ -280,6 +281,12 @@ class Periodic(ShortRepr):
             low, high = x[max(best - 1, 0)], x[min(best + 1, len(x) - 1)]
         return value, place
 
+    def spare(self, share: float) -> float:
+        """Return the smallest contact force less a share of the mean one."""
+        edges = self.cells.edges
+        mean = float(np.trapezoid(self.forces, edges)) / float(edges[-1] - edges[0])
+        return self.least()[0] - share * self.follower.side * mean
+
 
 def _scan(step: Array, rows: Array) -> Array:
     """Return ``z[i] = step @ z[i - 1] + rows[i]``, by doubling."""
@@ -354,34 +361,33 @@ def _by_series(follower: ElasticFollower, speeds: Array) -> Array:
     return np.array(found)
 
 
-def keeping_stiffness(follower: ElasticFollower, first: float, force: float) -> float:
+def keeping_stiffness(follower: ElasticFollower, share: float, left: float) -> float:
     """Return the least stiffness between last mass and frame that keeps a follower on its cam.
 
     Parameters
     ----------
     follower : ElasticFollower
         The follower, at its speed.
-    first : float
-        A stiffness above 0 of the size that is looked for.
-    force : float
-        Least contact force that is wanted.
+    share, left : float
+        Least contact force that is wanted: a share of the mean one, and a force besides.
 
     Returns
     -------
     float
-        Infinite if none up to a million times the first does.
+        Infinite if none up to that of the softest spring before the masses does.
     """
 
     def lack(stiffness: float) -> float:
-        return force - Periodic(replace(follower, spring=stiffness)).least()[0]
+        return left - Periodic(replace(follower, spring=stiffness)).spare(share)
 
     if lack(0.0) <= 0.0:
         return 0.0
-    low, high = 0.0, first
+    most, (load, size) = min(follower.stiffness), follower.sizes
+    low, high = 0.0, min(load / size, most)
     while lack(high) > 0.0:
-        low, high = high, 2.0 * high
-        if high > _STIFFEST * first:
+        if high == most:
             return math.inf
+        low, high = high, min(_STIFFER * high, most)
     return _root(lack, low, high)
 
 

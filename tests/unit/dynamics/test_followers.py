@@ -336,11 +336,29 @@ def test_where_the_load_pulls_it_jumps_at_all_speeds() -> None:
 
 def test_the_least_stiffness_keeps_contact() -> None:
     follower = replace(ONE, speed=230.0)
-    found = keeping_stiffness(follower, 10.0, 0.5)
+    found = keeping_stiffness(follower, 0.0, 0.5)
     assert found == pytest.approx(brentq(lambda ks: least_force(230.0, ks) - 0.5, 1.0, 50.0))
     assert Periodic(replace(follower, spring=found)).least()[0] == pytest.approx(0.5, abs=1e-6)
-    assert keeping_stiffness(replace(follower, loads=acting(1e4)), 10.0, 0.5) == 0.0
-    assert keeping_stiffness(replace(follower, loads=acting(-1e3)), 10.0, 0.5) == math.inf
+    assert keeping_stiffness(replace(follower, loads=acting(1e4)), 0.0, 0.5) == 0.0
+
+
+def test_the_least_stiffness_leaves_a_share_of_the_mean_force() -> None:
+    """The mean is that at rest: of a harmonic lift the inertia has none."""
+    found = keeping_stiffness(replace(ONE, speed=230.0), 0.1, 0.5)
+
+    def spare(ks: float) -> float:
+        mean = (90.0 + 5.0 * ks) * 2000.0 / (2000.0 + ks)
+        return least_force(230.0, ks) - 0.1 * mean - 0.5
+
+    assert found == pytest.approx(brentq(spare, 1.0, 50.0), rel=1e-6)
+
+
+def test_no_spring_is_stiffer_than_the_train() -> None:
+    """The speed at which just that of the train would do, and one beyond it."""
+    speed = float(brentq(lambda w: least_force(w, 2000.0), 300.0, 3000.0))
+    slower, faster = replace(ONE, speed=0.99 * speed), replace(ONE, speed=1.01 * speed)
+    assert 1000.0 < keeping_stiffness(slower, 0.0, 0.0) < 2000.0
+    assert keeping_stiffness(faster, 0.0, 0.0) == math.inf
 
 
 @pytest.mark.parametrize("shift", [0.0, math.pi, 2.0])

@@ -171,17 +171,19 @@ def _checked(moving: MovingCam, moment: Moment) -> MovingFollower:
     dwells = _dwells(moving, moment)
     worst = max(dwells, key=lambda one: one[2], default=(0.0, 0.0, 0.0))
     low, high = (moving.result.driver.text(one) for one in worst[:2])
-    (scale, unit), normal, least = _lift(moving), moment.normal, math.nan
+    (scale, unit), least = _lift(moving), math.nan
+    force = moving.follower.side * turn.contact_force(moment.x)
     impacts = [scale * one.impact for one in turn.flights if not math.isnan(one.impact)]
     if not moving.held:
-        least = float(np.nanmin(normal) / np.nanmean(normal))
+        mean = np.trapezoid(force, moment.x) / moving.result.program.period
+        least = float(force.min() / mean)
     return MovingFollower(
         flights=[_arc(moving, one) for one in turn.flights],
         impact=max(impacts, default=None),
         unit=f"{unit}/s",
         stays=drive.words(moving.jump) if moving.jump else "",
         least=least,
-        least_at=_at(moving, moment, int(np.nanargmin(normal))),
+        least_at=_at(moving, moment, int(np.argmin(force))),
         residual=worst[2] / total,
         residual_at=f"dwell from {low} to {high}",
         restless=0 if turn.repeats else turn.turns,

@@ -10,8 +10,11 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearcam.base.errors import DesignError, InfeasibleError, MissingExtraError, Problem
+from gearcam.base.findings import limit_of
+from gearcam.base.numerals import formatted
 from gearcam.cams.spec import POINTED
 from gearcam.dynamics.follower import ElasticFollower, damping_of
+from gearcam.dynamics.follower_checks import MOVING
 from gearcam.dynamics.follower_motion import settle
 from gearcam.dynamics.periodic import Periodic, elastic_jump, keeping_stiffness
 from gearcam.kinds.under_load import UnderLoad
@@ -39,8 +42,9 @@ _PER_PERIOD: Final = 12
 _MOST: Final = 20_000
 """Largest number of places."""
 
-_LEFT: Final = 10.0
-"""Least contact force with a spring that is solved for, over the load and the tolerance."""
+_LEFT: Final = 1e-5
+"""What a spring that is solved for leaves above the least contact force, over the load, and ten
+tolerances at least: so does one in six digits."""
 
 _NARROW: Final = 1e-8
 """Width, over the turn, to which an extreme is narrowed."""
@@ -64,9 +68,12 @@ def demand(design: Any) -> None:
     MissingExtraError
         If scipy is not installed.
     """
-    faults = _faults(design)
-    for key, what, near in faults:
-        raise DesignError([Problem(what, file=design.source, key=key, allowed=near)])
+    problems = [
+        Problem(what, file=design.source, key=key, allowed=near)
+        for key, what, near in _faults(design)
+    ]
+    if problems:
+        raise DesignError(problems)
     MissingExtraError.unless("scipy", what="dynamics", extra="dynamics")
 
 
@@ -81,9 +88,10 @@ def _faults(design: Any) -> list[tuple[str, str, str]]:
     slides = "a cam that slides to and fro has no constant speed: it has no dynamics here"
     still = "is missing: dynamics need the speed of the cam"
     train = dynamics.train_key(oscillating=design.follower.oscillating)
+    translates = design.form == "translating"
     cases = (
-        (design.form == "translating", "cam.form", slides, "another form"),
-        (design.drive.speed is None, "drive.speed_rpm", still, "a speed above 0"),
+        (translates, "cam.form", slides, "another form"),
+        (design.drive.speed is None and not translates, "drive.speed_rpm", still, "a speed above 0"),
         (not on_cam, "mass", "is missing: dynamics need the mass of the follower",
          '[[mass]] with of = "follower"'),
         (behind and dynamics.train is None, train, f"{lacks} the train",
@@ -139,30 +147,35 @@ class MovingCam:
     def solved(self) -> dict[str, float]:
         """What springs that are solved for need to keep the elastic follower on its cam.
 
-        Without friction, at the speed of the drive, with ten tolerances of the largest load left;
-        as for a rigid follower where it is rigid, or pressed from above or held.
+        Without friction, at the speed of the drive, with the least contact force that the check
+        `near-jump` asks for; as for a rigid follower where it is rigid, or pressed from above or
+        held.
 
         Raises
         ------
         InfeasibleError
-            If no stiffness does.
+            If none does that is softer than the train.
         """
         loads = self._rigid
         if not (self.elastic and loads.solved) or self.held or loads.side < 0.0:
             return loads.solved
         (what,) = loads.solved
         without = self._follower(self._with({what: 0.0}))
-        load, size = without.sizes
-        left = _LEFT * self.spec.tolerance * load
+        share = limit_of(MOVING, "near-jump", self.result.design.limits)
+        left = max(_LEFT, 10.0 * self.spec.tolerance) * without.sizes[0]
         if what == "preload":
-            lack = left - Periodic(without).least()[0]
-            return {what: max(0.0, lack / without.rest_share)}
-        found = keeping_stiffness(without, load / size, left) - without.spring
+            gain = (1.0 - share) * without.rest_share
+            lack = left - Periodic(without).spare(share)
+            found = lack / gain if gain else math.inf
+        else:
+            found = keeping_stiffness(without, share, left) - without.spring
         if math.isinf(found):
-            spring = next(k for k, one in enumerate(loads.springs) if one.rate == "solve")
-            what = "no stiffness keeps the elastic follower on the cam"
-            where = f"spring[{spring}].stiffness{'_nm_rad' if loads.follower.angular else '_n_mm'}"
-            raise InfeasibleError(what, where=where, nearest="more preload")
+            spring = next(k for k, one in enumerate(loads.springs) if one.solved)
+            told = f"no {what} softer than the train" if what == "stiffness" else f"no {what}"
+            told += " keeps the elastic follower on the cam"
+            told += f" with {formatted(share)} of the mean contact force" if share else ""
+            near = "more preload" if what == "stiffness" else "a smaller limits.contact_force"
+            raise InfeasibleError(told, where=f"spring[{spring}]", nearest=near)
         return {what: max(0.0, found)}
 
     def _with(self, solved: dict[str, float]) -> Loads:

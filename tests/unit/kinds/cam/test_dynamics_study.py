@@ -207,16 +207,33 @@ def test_a_swinging_follower_is_one_that_slides_on_a_long_arm() -> None:
 
 
 @pytest.mark.parametrize("which", ["preload_n", "stiffness_n_mm"])
-def test_a_spring_that_is_solved_for_keeps_the_follower(which: str) -> None:
+@pytest.mark.parametrize(("limit", "told"), [(0.1, "near-jump"), (0.0, "jump")])
+def test_a_spring_that_is_solved_for_keeps_the_follower(
+    which: str, limit: float, told: str
+) -> None:
+    """With the contact force that the check asks for, also with the six digits that are printed."""
     spring = {"stiffness_n_mm": 10, "preload_n": 200, which: "solve"}
-    solved = studied(TRAIN, {"spring": [spring], "drive.speed_rpm": 1150})
+    changes = {"drive.speed_rpm": 1150, "limits.contact_force": limit}
+    solved = studied(TRAIN, {"spring": [spring], **changes})
     value = fact(solved, f"spring.{which}")
-    assert fact(solved, "contact_force_n.min") == pytest.approx(0.0, abs=0.05)
-    built = studied(TRAIN, {"spring": [{**spring, which: value}], "drive.speed_rpm": 1150})
-    assert "jump" not in codes(built)
-    assert fact(built, "jump_rpm.elastic") == pytest.approx(1150.0, abs=0.1)
+    built = studied(TRAIN, {"spring": [{**spring, which: float(f"{value:.6g}")}], **changes})
+    for one in (solved, built):
+        assert not {"jump", "near-jump"} & set(codes(one))
+    forces = built.columns["contact_n"]
+    assert forces.min() == pytest.approx(limit * forces.mean(), rel=0.02, abs=0.5)
+    if not limit:
+        assert fact(built, "jump_rpm.elastic") == pytest.approx(1150.0, abs=0.1)
     weaker = {**spring, which: 0.98 * value}
-    assert "jump" in codes(studied(TRAIN, {"spring": [weaker], "drive.speed_rpm": 1150}))
+    assert told in codes(studied(TRAIN, {"spring": [weaker], **changes}))
+
+
+def test_a_spring_that_would_have_to_be_stiffer_than_the_train_is_refused() -> None:
+    spring = {"stiffness_n_mm": "solve", "preload_n": 20}
+    with pytest.raises(gc.InfeasibleError, match="no stiffness softer than the train") as error:
+        studied(TRAIN, {"spring": [spring], "drive.speed_rpm": 1150})
+    assert "more preload" in str(error.value)
+    with pytest.raises(gc.InfeasibleError, match="no preload keeps"):
+        studied(TRAIN, {"spring": [{"preload_n": "solve"}], "limits.contact_force": 1})
 
 
 def test_residual_vibrations_are_those_of_dwells() -> None:
@@ -359,6 +376,15 @@ REFUSED: tuple[tuple[str, dict[str, Any], str], ...] = (
     ("elastic_valve_train", {"mass": [{"of": "train", "mass_kg": 1}]}, "the mass of the follower"),
     ("translating_cam", {"drive.speed_mm_s": 10, "mass": [{"mass_kg": 1}]}, "cam.form"),
 )
+
+
+def test_all_that_is_missing_is_told_at_once() -> None:
+    with pytest.raises(gc.DesignError) as error:
+        studied(TRAIN, {"mass": [{"of": "train", "mass_kg": 1}], "dynamics": {}, "drive": {}})
+    keys = [one.key for one in error.value.problems]
+    assert keys == [
+        "drive.speed_rpm", "mass", "dynamics.stiffness_n_mm", "dynamics.contact_stiffness_n_mm"
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize(("name", "changes", "told"), REFUSED)
