@@ -15,6 +15,7 @@ from gearcam.base.numerals import formatted
 from gearcam.dynamics.follower_checks import MOVING, MovingFollower
 from gearcam.dynamics.periodic import Periodic
 from gearcam.dynamics.residual import residual
+from gearcam.kinds.cam.fit import law_text
 from gearcam.kinds.cam.moving import MovingCam
 from gearcam.kinds.follower_forces import solved_springs
 from gearcam.kinds.over_driver import over_driver
@@ -24,6 +25,8 @@ from gearcam.pictures.charts import Chart, Limit, Line
 from gearcam.results.study import StudyResult
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from gearcam.dynamics.follower_motion import Flight
     from gearcam.kinds.cam.moving import Moment
     from gearcam.kinds.cam.result import CamResult
@@ -47,6 +50,12 @@ _INSIDE: Final = 100
 
 _FARTHEST: Final = 100.0
 """Largest time of a rise over the natural period in that chart: beyond hardly anything is left."""
+
+_FLOOR: Final = 1e-4
+"""Where that chart ends, unless a phase of the design is below: laws have zeros."""
+
+_HARMONICS: Final = 1e-6
+"""Least harmonic that is shown, over the largest."""
 
 _NOISE: Final = 1e-9
 """Share of the largest value that is 0."""
@@ -349,51 +358,58 @@ def _over_speed(moving: MovingCam) -> Chart:
 
 
 def _spectrum(moving: MovingCam) -> Chart:
-    """Return the harmonics of the accelerations over the turn."""
+    """Return the harmonics of the accelerations over the turn, without those that are nothing."""
     even = moving.result.program.period * np.arange(_SPECTRUM) / _SPECTRUM
     moment, (name, per) = moving.at(even), _timed(moving)[1]
     most = int(min(1.5 * moving.follower.periods + 10.0, _SPECTRUM // 4))
-
-    def harmonics(values: Array) -> Array:
-        return 2.0 / _SPECTRUM * np.abs(np.fft.rfft(per * values))[1 : most + 1]
-
     order = np.arange(1.0, most + 1.0)
+    both = np.array([moment.motions[-1].d2s, moment.rigid.d2s])
+    sizes = 2.0 / _SPECTRUM * np.abs(np.fft.rfft(per * both))[:, 1 : most + 1]
+    seen = sizes > _HARMONICS * sizes.max()
     unit = name.removeprefix("acceleration_").replace("_", "/")
     return Chart(
         title="Harmonics of the acceleration",
         x="harmonic of the turn",
         y=f"amplitude, {unit}",
         log="y",
-        lines=(
-            Line(label="moving follower", x=order, y=harmonics(moment.motions[-1].d2s)),
-            Line(label="rigid follower", x=order, y=harmonics(moment.rigid.d2s)),
+        lines=tuple(
+            Line(label=f"{label} follower", x=order[own], y=size[own], dots=True)
+            for label, size, own in zip(("moving", "rigid"), sizes, seen, strict=True)
         ),
     )
 
 
 def _residuals(moving: MovingCam) -> Chart:
     """Return the residual vibrations of laws over the time of a rise, and of the design's own."""
-    result, tolerances = moving.result, moving.result.tolerances
-    frequency = float(moving.follower.frequencies[0]) / (2.0 * math.pi * moving.follower.speed)
-    laws: dict[str, Any] = {name: MOTION_LAWS[name].example for name in _SHOWN}
-    dots = []
+    result, follower = moving.result, moving.follower
+    frequency = float(follower.frequencies[0]) / (2.0 * math.pi * follower.speed)
     motion = result.design.motion
     phases = motion if isinstance(motion, tuple) else ()
-    for phase, placed in zip(phases, result.program.stretches, strict=False):
-        if isinstance(phase, RisePhase):
-            ratio = np.array([frequency * (placed.end - placed.start)])
-            if ratio[0] > _FARTHEST:
-                continue
-            y = residual(phase.law.build(tolerances).function, ratio)
-            dots.append((f"{placed.kind} from {formatted(math.degrees(placed.start), 4)} deg",
-                         ratio, y))  # fmt: skip
-    top = max(6.0, *(1.2 * float(ratio[0]) for _, ratio, _ in dots)) if dots else 6.0
-    ratios = np.linspace(0.0, top, _RATIOS)
-    lines = [
-        Line(label=name, x=ratios, y=residual(law.build(tolerances).function, ratios))
-        for name, law in laws.items()
+    own = [
+        (one.law, frequency * (placed.end - placed.start))
+        for one, placed in zip(phases, result.program.stretches, strict=False)
+        if isinstance(one, RisePhase)
     ]
-    lines += [Line(label=label, x=x, y=y, dots=True) for label, x, y in dots]
+    own = [(law, ratio) for law, ratio in own if ratio <= _FARTHEST]
+
+    def vibration(law: Any, ratios: ArrayLike) -> Array:
+        return residual(law.build(result.tolerances).function, ratios)
+
+    shown = [MOTION_LAWS[name].example for name in _SHOWN]
+    laws = {law_text(law): law for law in [*shown, *(law for law, _ in own)]}
+    of_phases = np.array([vibration(law, [ratio])[0] for law, ratio in own])
+    ratios = np.linspace(0.0, max([6.0, *(1.2 * ratio for _, ratio in own)]), _RATIOS)
+    of_phases[of_phases < _NOISE] = np.nan  # the zero of a law
+    floor = min([_FLOOR, *of_phases[np.isfinite(of_phases)]])
+    lines = [
+        Line(label=name, x=ratios, y=np.where(y >= floor, y, np.nan))
+        for name, law in laws.items()
+        for y in [vibration(law, ratios)]
+    ]
+    if own:
+        label = "phases of this cam" + (", not corrected" if result.design.drive.polydyne else "")
+        places = np.array([ratio for _, ratio in own])
+        lines.append(Line(label=label, x=places, y=of_phases, dots=True))
     limit = limit_of(MOVING, "residual-vibration", result.design.limits)
     return Chart(
         title="Vibration after a rise without damping, over its height",

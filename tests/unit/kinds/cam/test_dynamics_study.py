@@ -247,8 +247,8 @@ def test_residual_vibrations_are_those_of_dwells() -> None:
     swing = abs(math.sin(math.pi * tau) / (math.pi * tau * (1.0 - tau**2)))
     first, second = fact(study, "residual")
     assert (first["from_deg"], second["from_deg"]) == pytest.approx((90.0, 270.0))
-    line = [one for one in study.charts["residual"].lines if one.dots]
-    assert [float(one.y[0]) for one in line] == pytest.approx([swing, swing], abs=1e-12)
+    (dots,) = [one for one in study.charts["residual"].lines if one.dots]
+    assert dots.y == pytest.approx([swing, swing], abs=1e-12)
     assert first["residual_mm"] == pytest.approx(second["residual_mm"], rel=0.05)
     assert first["residual_mm"] < 10.0 * (swing + 1e-3)
 
@@ -350,6 +350,30 @@ def test_charts_of_the_study() -> None:
     assert list(charts) == ["contact", "lag", "acceleration", "spectrum", "residual", "speed"]
     assert list(studied(eccentric()).charts) == ["contact", "lag", "acceleration"]
     assert [one.label for one in charts["lag"].lines] == ["mass 1", "mass 2"]
+
+
+def test_the_chart_of_vibrations_has_the_laws_of_the_design_down_to_a_floor() -> None:
+    chart = studied("polydyne_cam").charts["residual"]
+    *curves, dots = chart.lines
+    assert [one.label for one in curves][-2:] == ["modified-sine", "4-5-6-7"]
+    assert dots.label == "phases of this cam, not corrected"
+    own = np.interp(dots.x, curves[-1].x, curves[-1].y)
+    assert dots.y == pytest.approx(own, rel=0.02)
+    assert min(np.nanmin(one.y) for one in curves) >= 1e-4
+    quick = studied("polydyne_cam", {"drive.speed_rpm": 380}).charts["residual"].lines
+    assert float(quick[-1].y[0]) < 1e-4
+    assert min(np.nanmin(one.y) for one in quick[:-1]) == pytest.approx(quick[-1].y[0], rel=0.5)
+
+
+def test_harmonics_are_those_of_the_accelerations() -> None:
+    """A harmonic lift has one; nothing that is noise is shown."""
+    design = eccentric(**{"dynamics": {"stiffness_n_mm": 2000}, "spring": [{"preload_n": 400}]})
+    moving, rigid = studied(design).charts["spectrum"].lines
+    square = (1000.0 * RPM) ** 2
+    assert rigid.x.tolist() == [1.0]
+    assert rigid.y == pytest.approx([5.0 * square])
+    share = 2000.0 / (2000.0 - 0.5e-3 * square)
+    assert moving.y == pytest.approx([5.0 * square * share], rel=1e-3)
 
 
 @pytest.mark.parametrize("name", ["groove_cam", "yoke_cam", "conjugate_cams"])
