@@ -101,6 +101,11 @@ class ElasticFollower(ShortRepr):
         """Both masses together."""
         return sum(self.masses)
 
+    @property
+    def last(self) -> int:
+        """The row of the lag of its last mass in a state."""
+        return 2 * len(self.masses) - 2
+
     @cached_property
     def matrices(self) -> tuple[Array, Array, Array]:
         """Masses, (n,), damping and stiffness, (n, n), of the follower in contact."""

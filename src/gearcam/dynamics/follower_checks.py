@@ -73,7 +73,9 @@ def jump(moving: MovingFollower, limit: float) -> Iterator[Remark]:  # noqa: ARG
     message += "more preload, or a lower speed keeps it there"
     message += f"; it stays there up to {moving.stays}." if moving.stays else "."
     if moving.restless:
-        message += f" After {moving.restless} turns it does not repeat itself yet: other turns have "
+        message += (
+            f" After {moving.restless} turns it does not repeat itself yet: other turns have "
+        )
         message += "other arcs."
     where, more = moving.flights[0], len(moving.flights) - 1
     yield Remark(message, f"{where}, and {more} more" if more else where, moving.impact,
@@ -82,7 +84,7 @@ def jump(moving: MovingFollower, limit: float) -> Iterator[Remark]:  # noqa: ARG
 
 _LEAST: Final = (
     "contact_force",
-    Param(NUMBER, ge=0, le=1, doc="least contact force of a moving follower over the mean one"),
+    Param(NUMBER, ge=0, lt=1, doc="least contact force of a moving follower over the mean one"),
     0.1,
 )
 

@@ -148,7 +148,7 @@ class Turn(ShortRepr):
         """
         tolerance = _FINER * self.tolerance
         motion = _turn(self.follower, self.method, tolerance, self.start, _NARROWER * _WIDEST)
-        finer, last = replace(self, motion=motion), 2 * len(self.follower.masses) - 2
+        finer, last = replace(self, motion=motion), self.follower.last
         x = np.linspace(self.follower.knots[0], self.follower.knots[-1], _COMPARED)[:-1]
         force = self.contact_force(x) - finer.contact_force(x)
         place = self.motion.at(x)[last] - motion.at(x)[last]

@@ -22,7 +22,8 @@ from numpy.typing import ArrayLike
 
 from gearcam.base.display import ShortRepr
 from gearcam.dynamics.follower import ElasticFollower
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, Ints
+from gearcam.numeric.narrowing import peaks
 from gearcam.numeric.roots import bracketed_root
 
 _EVEN: Final = 720
@@ -57,8 +58,8 @@ def _radau(count: int) -> tuple[Array, Array]:
 NODES, _INTEGRALS = _radau(8)
 """Nodes of a cell, over its width, and integrals up to them over values there."""
 
-_ROUNDS: Final = 4
-"""Divisions of the space around an extreme by a sixteenth."""
+_NARROW: Final = 1e-4
+"""Width to which two cells around an extreme are narrowed: its value is exact to rounding."""
 
 _SPEEDS: Final = 0.5
 """Step of the speeds that are looked at, over the damping ratio: a resonance at a whole fraction of
@@ -220,7 +221,7 @@ class Periodic(ShortRepr):
         size, begin = len(self._matrix), 0
         passed, whole, parts = np.zeros(size), np.eye(size), []
         for count, width in zip(self.cells.counts, self.cells.widths, strict=True):
-            step, inward = self._step(width)
+            step, inward = passing(self._matrix, self._input, width)
             put = np.einsum("gab,bng->na", inward, forces[:, begin : begin + count])
             parts.append((step, put))
             own = _scan(step, np.vstack([passed, put]))
@@ -233,10 +234,6 @@ class Periodic(ShortRepr):
             found.append(own[:-1])
             state = own[-1]
         return np.vstack([*found, state])
-
-    def _step(self, width: ArrayLike) -> tuple[Array, Array]:
-        """Return how a state passes through a cell, and what forces at its nodes add to it."""
-        return passing(self._matrix, self._input, width)
 
     def _by_angle(self, states: Array) -> Array:
         """Return lag and derivative by the angle in turn, (2*masses, n), from rows of states."""
@@ -252,7 +249,7 @@ class Periodic(ShortRepr):
         edges = self.cells.edges
         cell = np.clip(edges.searchsorted(x, side="right") - 1, 0, len(edges) - 2)
         width = x - edges[cell]
-        step, inward = self._step(width)
+        step, inward = passing(self._matrix, self._input, width)
         forces = self._forces(*_at_nodes(self.follower, edges[cell], width))
         found = np.einsum("nab,nb->na", step, self.states[cell])
         return self._by_angle(found + np.einsum("ngab,bng->na", inward, forces))
@@ -271,15 +268,13 @@ class Periodic(ShortRepr):
         """Return the smallest contact force, from the side that presses, and where it is."""
         side, edges = self.follower.side, self.cells.edges
         best = int(np.argmin(side * self.forces))
-        low, high = edges[max(best - 1, 0)], edges[min(best + 1, len(edges) - 1)]
-        value, place = side * float(self.forces[best]), float(edges[best])
-        for _ in range(_ROUNDS):
-            x = np.linspace(low, high, 33)
-            found = side * self.follower.contact_force(self.at(x))
-            best = int(np.argmin(found))
-            value, place = float(found[best]), float(x[best])
-            low, high = x[max(best - 1, 0)], x[min(best + 1, len(x) - 1)]
-        return value, place
+        ends = edges[[max(best - 1, 0), min(best + 1, len(edges) - 1)]]
+
+        def lifting(x: Array, _: Ints) -> Array:
+            return -side * self.follower.contact_force(self.at(x.ravel())).reshape(x.shape)
+
+        places, values = peaks(lifting, ends[:1], ends[1:], _NARROW * float(np.ptp(ends)))
+        return -float(values[0]), float(places[0])
 
     def spare(self, share: float) -> float:
         """Return the smallest contact force less a share of the mean one."""

@@ -355,7 +355,7 @@ def test_the_least_stiffness_leaves_a_share_of_the_mean_force() -> None:
 
 def test_no_spring_is_stiffer_than_the_train() -> None:
     """The speed at which just that of the train would do, and one beyond it."""
-    speed = float(brentq(lambda w: least_force(w, 2000.0), 300.0, 3000.0))
+    speed: Any = brentq(lambda w: least_force(w, 2000.0), 300.0, 3000.0)
     slower, faster = replace(ONE, speed=0.99 * speed), replace(ONE, speed=1.01 * speed)
     assert 1000.0 < keeping_stiffness(slower, 0.0, 0.0) < 2000.0
     assert keeping_stiffness(faster, 0.0, 0.0) == math.inf

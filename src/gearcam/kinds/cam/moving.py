@@ -91,7 +91,8 @@ def _faults(design: Any) -> list[tuple[str, str, str]]:
     translates = design.form == "translating"
     cases = (
         (translates, "cam.form", slides, "another form"),
-        (design.drive.speed is None and not translates, "drive.speed_rpm", still, "a speed above 0"),
+        (not translates and design.drive.speed is None, "drive.speed_rpm", still,
+         "a speed above 0"),
         (not on_cam, "mass", "is missing: dynamics need the mass of the follower",
          '[[mass]] with of = "follower"'),
         (behind and dynamics.train is None, train, f"{lacks} the train",
@@ -133,6 +134,21 @@ class MovingCam:
         self.held = len(result.touches) > 1
 
     @property
+    def lift_unit(self) -> tuple[float, str]:
+        """The unit of lifts over that inside, and its name."""
+        return self.result.cam.motions[0].follower.lift_unit
+
+    @property
+    def timed(self) -> dict[str, float]:
+        """Velocity and further derivatives in time over those by the angle, by their names."""
+        return self.result.cam.motions[0].timed_scales(self.speed)
+
+    @property
+    def rise(self) -> float:
+        """The whole lift, mm or rad."""
+        return float(np.ptp(self.result.program.range))
+
+    @property
     def elastic(self) -> bool:
         """Whether train or contact are elastic."""
         return self.spec.elastic
@@ -164,18 +180,15 @@ class MovingCam:
         share = limit_of(MOVING, "near-jump", self.result.design.limits)
         left = max(_LEFT, 10.0 * self.spec.tolerance) * without.sizes[0]
         if what == "preload":
-            gain = (1.0 - share) * without.rest_share
             lack = left - Periodic(without).spare(share)
-            found = lack / gain if gain else math.inf
+            found = lack / (1.0 - share) / without.rest_share
         else:
             found = keeping_stiffness(without, share, left) - without.spring
         if math.isinf(found):
             spring = next(k for k, one in enumerate(loads.springs) if one.solved)
-            told = f"no {what} softer than the train" if what == "stiffness" else f"no {what}"
-            told += " keeps the elastic follower on the cam"
-            told += f" with {formatted(share)} of the mean contact force" if share else ""
-            near = "more preload" if what == "stiffness" else "a smaller limits.contact_force"
-            raise InfeasibleError(told, where=f"spring[{spring}]", nearest=near)
+            told = "no stiffness softer than the train keeps the elastic follower on the cam, with "
+            told += f"{formatted(share)} of the mean contact force at least"
+            raise InfeasibleError(told, where=f"spring[{spring}]", nearest="more preload")
         return {what: max(0.0, found)}
 
     def _with(self, solved: dict[str, float]) -> Loads:
@@ -320,27 +333,27 @@ class Moment:
     """
 
     def __init__(self, moving: MovingCam, x: Array) -> None:
-        self._moving, self.x = moving, x
+        self.moving, self.x = moving, x
         self.rigid = moving.loads.motion(x)
 
     @cached_property
     def _states(self) -> tuple[Array, Mask]:
-        return self._moving.turn.states(self.x)
+        return self.moving.turn.states(self.x)
 
     @property
     def contact(self) -> Mask:
         """Where the follower is on its cam."""
-        if not self._moving.elastic:
+        if not self.moving.elastic:
             return ~self.statics.lifted
         return self._states[1]
 
     @cached_property
     def motions(self) -> list[DrivenMotion]:
         """The motion of each mass."""
-        if not self._moving.elastic:
+        if not self.moving.elastic:
             return [self.rigid]
         states, contact = self._states
-        found = self._moving.follower.accelerations(self.x, states, contact)
+        found = self.moving.follower.accelerations(self.x, states, contact)
         return [
             DrivenMotion(
                 self.x, self.rigid.s + states[2 * k], self.rigid.ds + states[2 * k + 1], one
@@ -348,15 +361,27 @@ class Moment:
             for k, one in enumerate(found)
         ]
 
-    @property
-    def residual(self) -> Array:
-        """Distance of the last mass from its place at rest, mm or rad."""
-        return self.motions[-1].s - self.rigid.s - self._moving.follower.rest(self.x)[-1]
+    @cached_property
+    def dwells(self) -> list[tuple[float, float, float]]:
+        """Ends of each dwell, and the farthest that an elastic follower is from rest in it."""
+        found, program = [], self.moving.result.program
+        for one in program.stretches if self.moving.elastic else ():
+            inside = (self.x >= one.start) & (self.x < one.end)
+            if one.kind == "dwell" and inside.any():
+                x = self.x[inside]
+                follower = self.moving.follower
+                apart = self._states[0][follower.last, inside] - follower.rest(x)[-1]
+                found.append((one.start, one.end, float(np.abs(apart).max())))
+        return found
+
+    def place(self, index: int) -> str:
+        """Return an angle in words."""
+        return self.moving.result.driver.place(float(self.x[index]))
 
     @cached_property
     def statics(self) -> Statics:
         """The forces, with that of the moving follower along the lift."""
-        moving, loads = self._moving, self._moving.loads
+        moving, loads = self.moving, self.moving.loads
         design, total = moving.result.design, loads.total_load(self.rigid)
         if moving.elastic:
             pressing = sum(
@@ -377,7 +402,7 @@ class Moment:
     @property
     def pressure(self) -> Array:
         """Contact pressure, MPa: 0 in flight, infinite on an edge."""
-        return np.where(self.contact, self._moving.under.pressure(self.statics), 0.0)
+        return np.where(self.contact, self.moving.under.pressure(self.statics), 0.0)
 
     @property
     def torque(self) -> Array:
