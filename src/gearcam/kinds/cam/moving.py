@@ -313,7 +313,8 @@ class MovingCam:
 
     def _beside(self, even: Array) -> Array:
         even[-1] = np.nextafter(even[-1], 0.0)
-        switches = [x for x, _, _ in self.turn.motion.switches] if self.elastic else []
+        flights = self.turn.flights if self.elastic else ()
+        switches = [x for one in flights for x in (one.start, one.end)]
         return with_both_sides(even, np.append(self.knots, switches))
 
     def at(self, x: Array) -> Moment:

@@ -11,6 +11,7 @@ import pytest
 import gearcam as gc
 from gearcam.base.findings import run_checks
 from gearcam.dynamics.follower_checks import MOVING, MovingFollower
+from gearcam.dynamics.polydyne import Train, polydyne
 from gearcam.kinds.cam import moving
 
 RPM = math.pi / 30.0
@@ -42,6 +43,30 @@ def test_the_train_of_the_reference() -> None:
     assert study.columns["contact"].min() == 1
     assert fact(study, "energy_residue") < 1e-6
     assert fact(study, "error_n") < 1e-2
+
+
+def test_what_the_findings_state_is_what_the_facts_do() -> None:
+    """The normal force of a flat follower is along the lift; the lift is 10 mm."""
+    design = TRAIN.with_({"limits.residual_vibration": 0.001})
+    near, swings = studied(design).study_findings
+    study = studied(TRAIN)
+    theta = study.columns["theta_deg"]
+    mean = np.trapezoid(study.columns["contact_n"], theta) / 360.0
+    assert near.value == pytest.approx(fact(study, "contact_force_n.min") / mean, rel=1e-3)
+    assert near.where == "at 197.63 deg"
+    first, second = fact(study, "residual")
+    assert swings.value == pytest.approx(0.1 * max(first["residual_mm"], second["residual_mm"]))
+    assert study.group["residual"][0]["residual_mm"].at_most == pytest.approx(0.01 * 10.0)
+    assert [one.code for one in (near, swings)] == ["near-jump", "residual-vibration"]
+
+
+def test_it_says_whether_turns_repeat() -> None:
+    for changes, told in (({"drive.speed_rpm": 1200}, False), ({"drive.speed_rpm": 1700}, True)):
+        study = studied(TRAIN, {"dynamics.turns": 7, **changes})
+        (found,) = [one for one in study.study_findings if one.code == "jump"]
+        after = f"After {fact(study, 'turns')} turns it does not repeat itself yet"
+        assert (after in found.message) == told
+        assert fact(study, "repeats") != told
 
 
 def test_beyond_its_jump_it_flies() -> None:
@@ -303,6 +328,21 @@ def test_a_polydyne_cam_does_not_swing_at_its_speed(damping: float) -> None:
     assert line.y[-1] > 50.0 * line.y.min()
     swinging = studied(design, {"drive.polydyne": False})
     assert fact(swinging, "residual")[0]["residual_mm"] > 5e-3
+
+
+def test_a_polydyne_lift_ends_as_it_begins_however_much_the_damper_lags() -> None:
+    """At 2 natural periods in a turn a bend is left of the turn before."""
+    program = gc.build(
+        gc.load("profiles/polydyne_cam.toml").with_({"drive.polydyne": False})
+    ).program
+    train = Train(mass=0.5e-3, stiffness=2000.0, damping=1.8, spring=0.0, damper=0.0, speed=1000.0)
+    lift = polydyne(program, train)
+    first, last = (lift.derivatives(np.array([x]), 1) for x in (0.0, 2.0 * math.pi * (1 - 1e-15)))
+    assert first[0] == pytest.approx(last[0], abs=1e-9)
+    s, x = program.derivatives(np.array([1.0, 3.0]), 2), np.array([1.0, 3.0])
+    y = lift.derivatives(x, 1)
+    v, rate = y[0] - s[0], y[1] - s[1]
+    assert 1.8 * 1000.0 * rate + 2000.0 * v == pytest.approx(0.5e-3 * 1e6 * s[2], abs=1e-8)
 
 
 def test_a_polydyne_lift_has_its_own_derivatives() -> None:
