@@ -68,17 +68,6 @@ def demand(design: Any) -> None:
     MissingExtraError
         If scipy is not installed.
     """
-    problems = [
-        Problem(what, file=design.source, key=key, allowed=near)
-        for key, what, near in _faults(design)
-    ]
-    if problems:
-        raise DesignError(problems)
-    MissingExtraError.unless("scipy", what="dynamics", extra="dynamics")
-
-
-def _faults(design: Any) -> list[tuple[str, str, str]]:
-    """Return what a design lacks: key, message, what is allowed."""
     dynamics = design.dynamics
     behind = any(one.of == "train" for one in design.mass)
     blunt = design.follower.type in ("flat", *POINTED)
@@ -88,6 +77,7 @@ def _faults(design: Any) -> list[tuple[str, str, str]]:
     slides = "a cam that slides to and fro has no constant speed: it has no dynamics here"
     still = "is missing: dynamics need the speed of the cam"
     train = dynamics.train_key(oscillating=design.follower.oscillating)
+    contact = "dynamics.contact_stiffness_n_mm"
     translates = design.form == "translating"
     cases = (
         (translates, "cam.form", slides, "another form"),
@@ -95,14 +85,19 @@ def _faults(design: Any) -> list[tuple[str, str, str]]:
          "a speed above 0"),
         (not on_cam, "mass", "is missing: dynamics need the mass of the follower",
          '[[mass]] with of = "follower"'),
-        (behind and dynamics.train is None, train, f"{lacks} the train",
-         "a number above 0"),
-        (behind and dynamics.contact_stiffness is None, "dynamics.contact_stiffness_n_mm",
-         f"{lacks} the contact too", 'a number above 0, or "hertz"'),
-        (dynamics.contact_stiffness == "hertz" and blunt, "dynamics.contact_stiffness_n_mm", flat,
-         "a number above 0"),
+        (behind and dynamics.train is None, train, f"{lacks} the train", "a number above 0"),
+        (behind and dynamics.contact_stiffness is None, contact, f"{lacks} the contact too",
+         'a number above 0, or "hertz"'),
+        (dynamics.contact_stiffness == "hertz" and blunt, contact, flat, "a number above 0"),
     )  # fmt: skip
-    return [case[1:] for case in cases if case[0]]
+    problems = [
+        Problem(what, file=design.source, key=key, allowed=near)
+        for wrong, key, what, near in cases
+        if wrong
+    ]
+    if problems:
+        raise DesignError(problems)
+    MissingExtraError.unless("scipy", what="dynamics", extra="dynamics")
 
 
 class MovingCam:
@@ -213,7 +208,7 @@ class MovingCam:
         if any(one.against for one in given):
             found.append(np.array([one.start for one in program.stretches]))
         knots = np.unique(np.concatenate(found))
-        knots = knots[(knots > _APART) & (knots < program.period - _APART)]
+        knots = knots[knots < program.period - _APART]
         knots = knots[np.diff(knots, prepend=0.0) > _APART * program.period]
         return np.concatenate([[0.0], knots, [program.period]])
 
@@ -289,8 +284,9 @@ class MovingCam:
         if not self.held and self.follower.side * periodic.forces[0] <= 0.0:
             start = np.zeros_like(start)
             start[0::2] = self.follower.rest(np.zeros(1))[:, 0]
-        many = {"turns": spec.turns, "method": spec.method, "tolerance": spec.tolerance}
-        return settle(self.follower, start, **many)
+        return settle(
+            self.follower, start, turns=spec.turns, method=spec.method, tolerance=spec.tolerance
+        )
 
     @cached_property
     def places(self) -> Array:
