@@ -323,7 +323,7 @@ def keeping_stiffness(follower: ElasticFollower, share: float, left: float) -> f
     if lack(0.0) <= 0.0:
         return 0.0
     most, (load, size) = min(follower.stiffness), follower.sizes
-    low, high = 0.0, min(load / size, most)
+    low, high = 0.0, min(0.1 * load / size, most)
     while lack(high) > 0.0:
         if high == most:
             return math.inf

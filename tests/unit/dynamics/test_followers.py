@@ -353,6 +353,20 @@ def test_the_least_stiffness_leaves_a_share_of_the_mean_force() -> None:
     assert found == pytest.approx(brentq(spare, 1.0, 50.0), rel=1e-6)
 
 
+def test_the_least_of_the_stiffnesses_that_leave_a_share() -> None:
+    """One that is far too stiff leaves less again of a mean force that grows with it."""
+    follower = replace(TRAIN, loads=acting(0.0, 30.0), speed=700.0 * RPM)
+    found = keeping_stiffness(follower, 0.1, 0.0)
+
+    def spare(ks: float) -> float:
+        return Periodic(replace(follower, spring=ks)).spare(0.1)
+
+    assert [spare(share * found) > 0.0 for share in (0.5, 0.999, 1.001, 2.0, 4.0)] == [
+        False, False, True, True, False
+    ]  # fmt: skip
+    assert keeping_stiffness(replace(follower, loads=acting(0.0, 10.0)), 0.1, 0.0) == math.inf
+
+
 def test_no_spring_is_stiffer_than_the_train() -> None:
     """The speed at which just that of the train would do, and one beyond it."""
     speed: Any = brentq(lambda w: least_force(w, 2000.0), 300.0, 3000.0)
