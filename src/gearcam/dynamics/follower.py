@@ -273,38 +273,27 @@ class ElasticFollower(ShortRepr):
             RELAXED: Mode(loose, (met,)),
         }
 
-    def _behind(self) -> Callable[..., list[float]]:
+    def _behind(self) -> Callable[..., list[Any]]:
         """Return what gives the derivatives of a state from the contact force."""
-        ks, cs, last = self.spring, self.damper * self.speed, self.masses[-1] * self.speed**2
+        masses = [one * self.speed**2 for one in self.masses]
+        stiffness = [*self.stiffness[1:], self.spring]  # behind each of them
+        damping = [one * self.speed for one in (*self.damping[1:], self.damper)]
+        links, last = list(zip(masses, stiffness, damping, strict=True)), len(masses) - 1
 
-        def one(
-            place: list[float], state: list[float], force: float, gap: float, put: float
-        ) -> list[float]:
-            y, v, a, load = place
-            r, rate = state[0], state[1]
-            v += rate
-            taken = load + cs * v
-            return [rate, (force - taken - ks * (y + r)) / last - a, gap, put - taken * v]
+        def behind(place: list[Any], state: Any, force: Any, gap: Any, put: Any) -> list[Any]:
+            y, v, a = place[:3]
+            found: list[Any] = []
+            for number, (mass, k, c) in enumerate(links):
+                r, rate = state[2 * number : 2 * number + 2]
+                load = place[3 + number]
+                bent, bending = y + r, v + rate
+                put = put - load * bending
+                if number < last:
+                    bent, bending = r - state[2 * number + 2], rate - state[2 * number + 3]
+                passed = k * bent + c * bending
+                put = put - c * bending * bending
+                found += (rate, (force - passed - load) / mass - a)
+                force = passed
+            return [*found, gap, put]
 
-        if len(self.masses) == 1:
-            return one
-        first, k2, c2 = (
-            self.masses[0] * self.speed**2, self.stiffness[1], self.damping[1] * self.speed
-        )  # fmt: skip
-
-        def two(
-            place: list[float], state: list[float], force: float, gap: float, put: float
-        ) -> list[float]:
-            y, v, a, load, behind = place
-            r, rate, r2, rate2 = state[:4]
-            bending = rate - rate2
-            inner = k2 * (r - r2) + c2 * bending
-            v2 = v + rate2
-            taken = behind + cs * v2
-            put -= load * (v + rate) + c2 * bending * bending + taken * v2
-            return [
-                rate, (force - inner - load) / first - a,
-                rate2, (inner - taken - ks * (y + r2)) / last - a, gap, put,
-            ]  # fmt: skip
-
-        return two
+        return behind
