@@ -13,6 +13,7 @@ forces follow from it without cancellation, however stiff the train is. At the s
 with derivatives by the cam's angle. N is the contact force along the lift, and the springs are at
 rest where all x and y are 0. Where N falls to 0 the follower flies: the end of the first spring,
 which has no mass, relaxes as its damper lets it, at q above the cam, until it meets the cam again.
+That is soon done, at a rate far above all frequencies: from then on the end goes with the mass.
 
 Units: loads in N or N mm, lifts in mm or rad, masses in N s2/mm or N mm s2.
 """
@@ -35,6 +36,7 @@ from gearcam.numeric.arrays import Array, Mask, Plane
 
 CONTACT: Final = "contact"
 FLIGHT: Final = "flight"
+RELAXED: Final = "flight, relaxed"
 
 _TABLED: Final = 1e-12
 """Error of tabled lifts and loads, relative."""
@@ -98,6 +100,11 @@ class ElasticFollower(ShortRepr):
     def mass(self) -> float:
         """Both masses together."""
         return sum(self.masses)
+
+    @property
+    def last(self) -> int:
+        """The row of the lag of its last mass in a state."""
+        return 2 * len(self.masses) - 2
 
     @cached_property
     def matrices(self) -> tuple[Array, Array, Array]:
@@ -204,17 +211,10 @@ class ElasticFollower(ShortRepr):
         contact : (n,) bool array
             Whether the follower is on the cam.
         """
-        y, v = self.lift(x, 1)
-        force = np.zeros((len(self.masses) + 1, x.size))
-        force[0] = np.where(contact, self.contact_force(states), 0.0)
-        if len(self.masses) == 2:
-            lag, rate = states[0] - states[2], states[1] - states[3]
-            force[1] = self.stiffness[1] * lag + self.damping[1] * self.speed * rate
-        last = 2 * len(self.masses) - 2
-        force[-1] = self.spring * (y + states[last])
-        force[-1] += self.damper * self.speed * (v + states[last + 1])
-        net = force[:-1] - force[1:] - self.loads(x)
-        return net / (np.array(self.masses)[:, None] * self.speed**2)
+        y, v, a = self.lift(x, 2)
+        force = np.where(contact, self.contact_force(states), 0.0)
+        rates = self._behind()([y, v, a, *self.loads(x)], states, force, 0.0, 0.0)
+        return a + np.array(rates[1 : 2 * len(self.masses) : 2])
 
     def energy(self, x: Array, states: Array, contact: Mask) -> Array:
         """Return kinetic energy and that of the springs, (n,) (see `accelerations`)."""
@@ -228,12 +228,17 @@ class ElasticFollower(ShortRepr):
         moving = np.array(self.masses) @ (v + rates) ** 2
         return 0.5 * (found + self.speed**2 * moving)
 
-    @cached_property
-    def modes(self) -> dict[str, Mode]:
-        """Its equations of motion over the angle.
+    def modes(self, relaxed: float) -> dict[str, Mode]:
+        """Return its equations of motion over the angle.
 
         The state has lag and its derivative of each mass, q, and the work that is put in: that of
         the cam less what loads and dampers take.
+
+        Parameters
+        ----------
+        relaxed : float
+            What the first spring is bent by, over what the largest load does, when it counts as
+            relaxed.
         """
         read = self.tabled
         count, k1, c1 = len(self.masses), self.stiffness[0], self.damping[0] * self.speed
@@ -252,45 +257,43 @@ class ElasticFollower(ShortRepr):
             back = relaxing * (q - r)
             return behind(read(x), state.tolist(), 0.0, rate + back, -c1 * back * back)
 
+        def loose(x: float, state: Any) -> list[float]:
+            return behind(read(x), state.tolist(), 0.0, state[1], 0.0)
+
         if self.held:
             return {CONTACT: Mode(contact)}
         side, (load, size) = self.side, self.sizes
+        still = relaxed * load / k1
         lost = Switch(lambda _, s: side * (-k1 * s[0] - c1 * s[1]), FLIGHT, _HAIR * load)
         met = Switch(lambda _, s: side * s[2 * count], CONTACT, _HAIR * size)
-        return {CONTACT: Mode(contact, (lost,)), FLIGHT: Mode(flight, (met,))}
+        bent = Switch(lambda _, s: abs(s[2 * count] - s[0]) - still, RELAXED, 0.0, dips=False)
+        return {
+            CONTACT: Mode(contact, (lost,)),
+            FLIGHT: Mode(flight, (met, bent)),
+            RELAXED: Mode(loose, (met,)),
+        }
 
-    def _behind(self) -> Callable[..., list[float]]:
+    def _behind(self) -> Callable[..., list[Any]]:
         """Return what gives the derivatives of a state from the contact force."""
-        ks, cs, last = self.spring, self.damper * self.speed, self.masses[-1] * self.speed**2
+        masses = [one * self.speed**2 for one in self.masses]
+        stiffness = [*self.stiffness[1:], self.spring]  # behind each of them
+        damping = [one * self.speed for one in (*self.damping[1:], self.damper)]
+        links, last = list(zip(masses, stiffness, damping, strict=True)), len(masses) - 1
 
-        def one(
-            place: list[float], state: list[float], force: float, gap: float, put: float
-        ) -> list[float]:
-            y, v, a, load = place
-            r, rate = state[0], state[1]
-            v += rate
-            taken = load + cs * v
-            return [rate, (force - taken - ks * (y + r)) / last - a, gap, put - taken * v]
+        def behind(place: list[Any], state: Any, force: Any, gap: Any, put: Any) -> list[Any]:
+            y, v, a = place[:3]
+            found: list[Any] = []
+            for number, (mass, k, c) in enumerate(links):
+                r, rate = state[2 * number : 2 * number + 2]
+                load = place[3 + number]
+                bent, bending = y + r, v + rate
+                put = put - load * bending
+                if number < last:
+                    bent, bending = r - state[2 * number + 2], rate - state[2 * number + 3]
+                passed = k * bent + c * bending
+                put = put - c * bending * bending
+                found += (rate, (force - passed - load) / mass - a)
+                force = passed
+            return [*found, gap, put]
 
-        if len(self.masses) == 1:
-            return one
-        first, k2, c2 = (
-            self.masses[0] * self.speed**2, self.stiffness[1], self.damping[1] * self.speed
-        )  # fmt: skip
-
-        def two(
-            place: list[float], state: list[float], force: float, gap: float, put: float
-        ) -> list[float]:
-            y, v, a, load, behind = place
-            r, rate, r2, rate2 = state[:4]
-            bending = rate - rate2
-            inner = k2 * (r - r2) + c2 * bending
-            v2 = v + rate2
-            taken = behind + cs * v2
-            put -= load * (v + rate) + c2 * bending * bending + taken * v2
-            return [
-                rate, (force - inner - load) / first - a,
-                rate2, (inner - taken - ks * (y + r2)) / last - a, gap, put,
-            ]  # fmt: skip
-
-        return two
+        return behind

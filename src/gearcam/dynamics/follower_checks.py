@@ -26,8 +26,8 @@ class MovingFollower(ShortRepr):
     ----------
     flights : sequence of str
         Arcs in which it is off its cam, in words.
-    impact : float
-        Largest speed at which it meets the cam again.
+    impact : float or None
+        Largest speed at which it meets the cam again; None if it does not within the turn.
     unit : str
         Of that speed.
     stays : str
@@ -40,8 +40,8 @@ class MovingFollower(ShortRepr):
         Largest vibration in a dwell over the lift; 0 without dwells.
     residual_at : str
         The dwell, in words.
-    repeats : bool
-        Whether its turns repeat.
+    restless : int
+        Number of turns after which they do not repeat yet; 0 if they do.
     energy_residue : float
         What the energies of a turn do not balance by.
     tolerance : float
@@ -49,14 +49,14 @@ class MovingFollower(ShortRepr):
     """
 
     flights: Sequence[str]
-    impact: float
+    impact: float | None
     unit: str
     stays: str
     least: float
     least_at: str
     residual: float
     residual_at: str
-    repeats: bool
+    restless: int
     energy_residue: float
     tolerance: float
 
@@ -72,8 +72,11 @@ def jump(moving: MovingFollower, limit: float) -> Iterator[Remark]:  # noqa: ARG
     message = "The follower leaves the cam and meets it again with an impact: a stiffer spring, "
     message += "more preload, or a lower speed keeps it there"
     message += f"; it stays there up to {moving.stays}." if moving.stays else "."
-    if not moving.repeats:
-        message += " Its turns do not repeat: other turns have other arcs."
+    if moving.restless:
+        message += (
+            f" After {moving.restless} turns it does not repeat itself yet: other turns have "
+        )
+        message += "other arcs."
     where, more = moving.flights[0], len(moving.flights) - 1
     yield Remark(message, f"{where}, and {more} more" if more else where, moving.impact,
                  unit=moving.unit)  # fmt: skip
@@ -81,7 +84,7 @@ def jump(moving: MovingFollower, limit: float) -> Iterator[Remark]:  # noqa: ARG
 
 _LEAST: Final = (
     "contact_force",
-    Param(NUMBER, ge=0, le=1, doc="least contact force of a moving follower over the mean one"),
+    Param(NUMBER, ge=0, lt=1, doc="least contact force of a moving follower over the mean one"),
     0.1,
 )
 
@@ -90,7 +93,8 @@ _LEAST: Final = (
 def near_jump(moving: MovingFollower, limit: float) -> Iterator[Remark]:
     """Warn if a follower nearly leaves its cam: a little more speed or friction, and it does.
 
-    Looks at: least contact force of the moving follower, over the mean one.
+    Looks at: least contact force of the moving follower along the lift, over the mean one. A spring
+    that is solved for keeps this limit.
     """
     if not moving.flights and moving.least < limit:
         message = "The follower nearly leaves the cam: a stiffer spring or more preload holds it"

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Final
 
@@ -11,12 +12,13 @@ from numpy.typing import ArrayLike
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import InfeasibleError
-from gearcam.dynamics.follower import CONTACT, FLIGHT, ElasticFollower
+from gearcam.dynamics.follower import CONTACT, ElasticFollower
 from gearcam.dynamics.integrate import Integrator, Motion
 from gearcam.numeric.arrays import Array, Mask
 
-FOLLOWED: Final = 100.0
-"""Natural periods in a turn up to which "auto" follows each with dop853: then radau is faster."""
+FOLLOWED: Final = 300.0
+"""Natural periods in a turn up to which "auto" follows each with dop853: beyond, radau is faster;
+with flights it is not up to about 1000, without them beyond 100 already."""
 
 _WIDEST: Final = 0.25
 """Largest step of dop853 in fastest natural periods: between its ends wider ones are not exact."""
@@ -24,11 +26,22 @@ _WIDEST: Final = 0.25
 _FINER: Final = 0.1
 """Tolerance of the run that tells the error, over that of the motion."""
 
+_NARROWER: Final = 0.75
+"""The same of the largest step: by the order of dop853, 8, a tenth of the error."""
+
+_RELAXED: Final = 0.1
+"""What the first spring of a follower that flies is still bent by when it counts as relaxed, over
+the largest bend and the tolerance. A hundredth of it dop853, at the limit of its steps, would not
+come down to."""
+
 _MOST: Final = 1e7
 """Largest number of natural vibrations that are followed each."""
 
 _EACH: Final = 8e-4
 """What one takes dop853, s."""
+
+_PATIENCE: Final = 5
+"""Turns that may bring a motion no nearer to one that repeats, before it is given up."""
 
 _SAME: Final = 10.0
 """What two turns may differ by to be one, in tolerances."""
@@ -74,8 +87,6 @@ class Turn(ShortRepr):
         Number of turns.
     repeats : bool
         Whether the last ended as it had begun, within the tolerance.
-    evaluations : int
-        Of all turns.
     """
 
     follower: ElasticFollower
@@ -85,7 +96,6 @@ class Turn(ShortRepr):
     tolerance: float
     turns: int
     repeats: bool
-    evaluations: int
 
     def states(self, x: ArrayLike) -> tuple[Array, Mask]:
         """Return states, (m, n), at angles (n,) of the turn, and where there is contact."""
@@ -101,22 +111,23 @@ class Turn(ShortRepr):
     def flights(self) -> tuple[Flight, ...]:
         """Where it is off the cam, in the order of the landings."""
         low, high = (float(one) for one in self.follower.knots[[0, -1]])
-        begun = self.start[0] == FLIGHT
-        leaving = [x for x, _, after in self.motion.switches if after == FLIGHT]
-        landing = [x for x, _, after in self.motion.switches if after == CONTACT]
-        if begun:  # it left in the turn before, as in this one if the turns repeat
-            back = leaving[-1] if self.motion.mode == FLIGHT and leaving else low
+        leaving = [x for x, before, _ in self.motion.switches if before == CONTACT]
+        landing = {x: before for x, before, after in self.motion.switches if after == CONTACT}
+        if self.start[0] != CONTACT:  # it left in the turn before, as in this one if they repeat
+            back = leaving[-1] if self.motion.mode != CONTACT and leaving else low
             leaving = [back, *(one for one in leaving if one != back)]
         ends = [*landing, *[high] * (len(leaving) - len(landing))]
         return tuple(
-            Flight(start=start, end=end, impact=self._impact(end) if end in landing else np.nan)
+            Flight(start=start, end=end, impact=self._impact(end, landing.get(end)))
             for start, end in zip(leaving, ends, strict=True)
         )
 
-    def _impact(self, x: float) -> float:
-        """Return the speed at which the follower meets the cam at an angle."""
+    def _impact(self, x: float, mode: str | None) -> float:
+        """Return the speed at which a follower that flies in a mode meets the cam at an angle."""
+        if mode is None:
+            return math.nan
         (state,) = self.motion.at([x]).T
-        flying = self.follower.modes[FLIGHT].rate(x, state)
+        flying = self.follower.modes(_RELAXED * self.tolerance)[mode].rate(x, state)
         return abs(float(flying[2 * len(self.follower.masses)])) * self.follower.speed
 
     @cached_property
@@ -135,16 +146,13 @@ class Turn(ShortRepr):
 
         That run has a tenth of the tolerance, and begins the turn in the same state.
         """
-        finer = _turn(self.follower, self.method, _FINER * self.tolerance, self.start)
+        tolerance = _FINER * self.tolerance
+        motion = _turn(self.follower, self.method, tolerance, self.start, _NARROWER * _WIDEST)
+        finer, last = replace(self, motion=motion), self.follower.last
         x = np.linspace(self.follower.knots[0], self.follower.knots[-1], _COMPARED)[:-1]
-        found = []
-        for motion in (self.motion, finer):
-            contact = np.array([one == CONTACT for one in motion.modes(x)])
-            states = motion.at(x)
-            force = np.where(contact, self.follower.contact_force(states), 0.0)
-            found.append((force, states[2 * len(self.follower.masses) - 2]))
-        (force, place), (better, nearer) = found
-        return float(np.abs(force - better).max()), float(np.abs(place - nearer).max())
+        force = self.contact_force(x) - finer.contact_force(x)
+        place = self.motion.at(x)[last] - motion.at(x)[last]
+        return float(np.abs(force).max()), float(np.abs(place).max())
 
 
 def settle(
@@ -156,6 +164,8 @@ def settle(
     tolerance: float = 1e-6,
 ) -> Turn:
     """Return the turn of a follower after which it repeats itself, or the last of some turns.
+
+    Once five turns have brought it no nearer to repeating itself, none follows.
 
     Parameters
     ----------
@@ -186,18 +196,20 @@ def settle(
         what = f"{vibrations:.2g} natural vibrations take dop853 about {_EACH * vibrations:.2g} s"
         raise InfeasibleError(what, where="dynamics.method", nearest='"auto" or "radau"')
     state: tuple[str, Array] = CONTACT, np.append(start, [0.0, 0.0])
-    scales, evaluations, number = _scales(follower), 0, 0
+    scales, number, nearest, reached = _scales(follower), 0, math.inf, 0
     while True:
         motion = _turn(follower, method, tolerance, state)
-        number, evaluations = number + 1, evaluations + motion.evaluations
-        apart = np.abs(motion.end - state[1])[:-1] / scales[:-1]
-        repeats = motion.mode == state[0] and bool((apart <= _SAME * tolerance).all())
-        if repeats or number == turns:
+        number += 1
+        apart = float((np.abs(motion.end - state[1])[:-1] / scales[:-1]).max())
+        if apart < nearest:
+            nearest, reached = apart, number
+        repeats = motion.mode == state[0] and apart <= _SAME * tolerance
+        if repeats or number == min(turns, reached + _PATIENCE):
             break
         state = motion.mode, np.append(motion.end[:-1], 0.0)
     return Turn(
         follower=follower, motion=motion, start=state, method=method, tolerance=tolerance,
-        turns=number, repeats=repeats, evaluations=evaluations,
+        turns=number, repeats=repeats,
     )  # fmt: skip
 
 
@@ -209,13 +221,17 @@ def chosen(follower: ElasticFollower, method: str) -> str:
 
 
 def _turn(
-    follower: ElasticFollower, method: str, tolerance: float, start: tuple[str, Array]
+    follower: ElasticFollower,
+    method: str,
+    tolerance: float,
+    start: tuple[str, Array],
+    widest: float = _WIDEST,
 ) -> Motion:
     """Return the motion over a turn."""
     atol: Any = tuple((tolerance * _scales(follower)).tolist())
-    widest = _WIDEST * 2.0 * np.pi / follower.periods if method == "dop853" else np.inf
-    integrate = Integrator(method=method, rtol=tolerance, atol=atol, widest=float(widest))
-    return integrate(follower.modes, start, follower.knots.tolist())
+    widest = widest * 2.0 * math.pi / follower.periods if method == "dop853" else math.inf
+    integrate = Integrator(method=method, rtol=tolerance, atol=atol, widest=widest)
+    return integrate(follower.modes(_RELAXED * tolerance), start, follower.knots.tolist())
 
 
 def _scales(follower: ElasticFollower) -> Array:

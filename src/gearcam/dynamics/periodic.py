@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
 from typing import Any, Final
@@ -22,7 +22,8 @@ from numpy.typing import ArrayLike
 
 from gearcam.base.display import ShortRepr
 from gearcam.dynamics.follower import ElasticFollower
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, Ints
+from gearcam.numeric.narrowing import peaks
 from gearcam.numeric.roots import bracketed_root
 
 _EVEN: Final = 720
@@ -57,8 +58,8 @@ def _radau(count: int) -> tuple[Array, Array]:
 NODES, _INTEGRALS = _radau(8)
 """Nodes of a cell, over its width, and integrals up to them over values there."""
 
-_ROUNDS: Final = 4
-"""Divisions of the space around an extreme by a sixteenth."""
+_NARROW: Final = 1e-4
+"""Width to which two cells around an extreme are narrowed: its value is exact to rounding."""
 
 _SPEEDS: Final = 0.5
 """Step of the speeds that are looked at, over the damping ratio: a resonance at a whole fraction of
@@ -79,79 +80,12 @@ _NEARLY: Final = 0.02
 _SETTLED: Final = 4.6
 """Exponent of a vibration that is small: 1 %."""
 
-_STIFFEST: Final = 1e6
-"""Largest stiffness of a spring that is looked for, over the first."""
+_STIFFER: Final = 1.5
+"""Steps in which the stiffness of a spring is looked for; one far too stiff keeps less again of a
+mean force that grows with it."""
 
 _EXACT: Final = 1e-10
 """Relative tolerance of roots."""
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Cells(ShortRepr):
-    """A turn in cells, equal ones in each zone.
-
-    Parameters
-    ----------
-    edges : (n + 1,) array, rad
-        Their ends.
-    counts : tuple of int
-        Number of cells of each zone.
-    widths : tuple of float, rad
-        Their width in each.
-    places : (3, n, g) array
-        Lift and two derivatives at nodes in each cell.
-    loads : (masses, n, g) array
-        Loads there.
-    followed : bool
-        Whether they are small beside the natural periods all along.
-    """
-
-    edges: Array
-    counts: tuple[int, ...]
-    widths: tuple[float, ...]
-    places: Array
-    loads: Array
-    followed: bool
-
-
-def cells_of(follower: ElasticFollower, speed: float | None = None) -> Cells:
-    """Return cells for a follower at a `speed`, rad/s, by default its own, and above if all small.
-
-    Parameters
-    ----------
-    follower : ElasticFollower
-        The follower.
-    speed : float, optional
-        Of the cam.
-    """
-    speed = speed or follower.speed
-    turn = float(follower.knots[-1] - follower.knots[0])
-    small = 2.0 * math.pi * speed / float(follower.frequencies[-1]) / _PER_PERIOD
-    followed = turn <= _FOLLOWED * small
-    even = min(turn / _EVEN, small) if followed else turn / _EVEN
-    fading = min(small, even), _GONE * speed / float(-follower.roots.real.max())
-    edges, counts, widths = [follower.knots[:1]], [], []
-    for low, high in pairwise(follower.knots.tolist()):
-        middle = high if followed else min(low + fading[1], high)
-        for start, end, width in ((low, middle, fading[0]), (middle, high, even)):
-            if end > start:
-                counts.append(max(math.ceil((end - start) / width), _PER_PIECE))
-                widths.append((end - start) / counts[-1])
-                edges.append(np.linspace(start, end, counts[-1] + 1)[1:])
-    ends = np.concatenate(edges)
-    places, loads = _at_nodes(follower, ends[:-1], np.diff(ends))
-    return Cells(
-        edges=ends, counts=tuple(counts), widths=tuple(widths), places=places, loads=loads,
-        followed=followed,
-    )  # fmt: skip
-
-
-def _at_nodes(follower: ElasticFollower, low: Array, width: Array) -> tuple[Array, Array]:
-    """Return lift, derivatives and loads at nodes of cells: (3, n, g) and (masses, n, g)."""
-    x = low[:, None] + width[:, None] * NODES
-    x[:, -1] = np.maximum(np.nextafter(x[:, -1], -np.inf), low)  # before a knot
-    places = np.array([one.reshape(x.shape) for one in follower.lift(x.ravel(), 2)])
-    return places, follower.loads(x.ravel()).reshape(-1, *x.shape)
 
 
 def passing(matrix: Array, entry: Array, width: ArrayLike) -> tuple[Array, Array]:
@@ -190,52 +124,48 @@ class Periodic(ShortRepr):
     ----------
     follower : ElasticFollower
         The follower.
-    cells : Cells, optional
-        Those of `cells_of`, at its speed or below it.
     """
 
-    def __init__(self, follower: ElasticFollower, cells: Cells | None = None) -> None:
+    def __init__(self, follower: ElasticFollower) -> None:
         self.follower = follower
-        self.cells = cells_of(follower) if cells is None else cells
+        self._zones = _zones(follower)
+        cells = [np.linspace(low, high, count + 1)[:-1] for low, high, count in self._zones]
+        self.edges: Array = np.concatenate([*cells, follower.knots[-1:]])
         count, self._unit = len(follower.masses), float(follower.frequencies[-1])
         self._matrix = follower.system / follower.speed
         self._input = np.zeros((2 * count, count))
         inertia = np.array(follower.masses) * self._unit * follower.speed
         self._input[count:] = np.diag(1.0 / inertia)
 
-    def _forces(self, places: Array, loads: Array) -> Array:
-        """Return what bends the springs, (masses, ...), from lift, derivatives and loads."""
-        follower = self.follower
-        y, v, a = places
-        masses = np.array(follower.masses).reshape(-1, *(1 for _ in y.shape))
-        found = -loads - masses * follower.speed**2 * a
+    def _forces(self, low: Array, width: Array) -> Array:
+        """Return what bends the springs at nodes of cells, (masses, n, g)."""
+        x = low[:, None] + width[:, None] * NODES
+        x[:, -1] = np.maximum(np.nextafter(x[:, -1], -np.inf), low)  # before a knot
+        follower, flat = self.follower, x.ravel()
+        y, v, a = follower.lift(flat, 2)
+        found = -follower.loads(flat) - np.outer(follower.masses, follower.speed**2 * a)
         found[-1] -= follower.spring * y + follower.damper * follower.speed * v
-        return found
+        return found.reshape(-1, *x.shape)
 
     @cached_property
     def states(self) -> Array:
         """Lags, and their derivatives by time over the highest frequency, (n + 1, 2*masses)."""
-        forces = self._forces(self.cells.places, self.cells.loads)
-        size, begin = len(self._matrix), 0
-        passed, whole, parts = np.zeros(size), np.eye(size), []
-        for count, width in zip(self.cells.counts, self.cells.widths, strict=True):
-            step, inward = self._step(width)
+        forces = self._forces(self.edges[:-1], np.diff(self.edges))
+        whole, parts, begin = np.eye(len(self._matrix)), [], 0
+        for low, high, count in self._zones:
+            step, inward = passing(self._matrix, self._input, (high - low) / count)
             put = np.einsum("gab,bng->na", inward, forces[:, begin : begin + count])
             parts.append((step, put))
-            own = _scan(step, np.vstack([passed, put]))
-            passed, whole = own[-1], np.linalg.matrix_power(step, count) @ whole
-            begin += count
-        state = np.asarray(np.linalg.solve(np.eye(size) - whole, passed), dtype=float)
-        found = []
-        for step, put in parts:
-            own = _scan(step, np.vstack([state, put]))
-            found.append(own[:-1])
-            state = own[-1]
-        return np.vstack([*found, state])
+            whole, begin = np.linalg.matrix_power(step, count) @ whole, begin + count
 
-    def _step(self, width: ArrayLike) -> tuple[Array, Array]:
-        """Return how a state passes through a cell, and what forces at its nodes add to it."""
-        return passing(self._matrix, self._input, width)
+        def turn(state: Array) -> Array:
+            found = [state[None]]
+            for step, put in parts:
+                found.append(_scan(step, np.vstack([found[-1][-1], put]))[1:])
+            return np.vstack(found)
+
+        added = turn(np.zeros(len(whole)))[-1]
+        return turn(np.asarray(np.linalg.solve(np.eye(len(whole)) - whole, added), dtype=float))
 
     def _by_angle(self, states: Array) -> Array:
         """Return lag and derivative by the angle in turn, (2*masses, n), from rows of states."""
@@ -247,14 +177,13 @@ class Periodic(ShortRepr):
 
     def at(self, x: ArrayLike) -> Array:
         """Return lags and their derivatives by the angle in turn, (2*masses, n), at angles."""
-        x = np.asarray(x, dtype=float)
-        edges = self.cells.edges
+        x, edges = np.asarray(x, dtype=float), self.edges
         cell = np.clip(edges.searchsorted(x, side="right") - 1, 0, len(edges) - 2)
         width = x - edges[cell]
-        step, inward = self._step(width)
-        forces = self._forces(*_at_nodes(self.follower, edges[cell], width))
+        step, inward = passing(self._matrix, self._input, width)
         found = np.einsum("nab,nb->na", step, self.states[cell])
-        return self._by_angle(found + np.einsum("ngab,bng->na", inward, forces))
+        put = np.einsum("ngab,bng->na", inward, self._forces(edges[cell], width))
+        return self._by_angle(found + put)
 
     @cached_property
     def start(self) -> Array:
@@ -268,17 +197,37 @@ class Periodic(ShortRepr):
 
     def least(self) -> tuple[float, float]:
         """Return the smallest contact force, from the side that presses, and where it is."""
-        side, edges = self.follower.side, self.cells.edges
+        side, edges = self.follower.side, self.edges
         best = int(np.argmin(side * self.forces))
-        low, high = edges[max(best - 1, 0)], edges[min(best + 1, len(edges) - 1)]
-        value, place = side * float(self.forces[best]), float(edges[best])
-        for _ in range(_ROUNDS):
-            x = np.linspace(low, high, 33)
-            found = side * self.follower.contact_force(self.at(x))
-            best = int(np.argmin(found))
-            value, place = float(found[best]), float(x[best])
-            low, high = x[max(best - 1, 0)], x[min(best + 1, len(x) - 1)]
-        return value, place
+        ends = edges[[max(best - 1, 0), min(best + 1, len(edges) - 1)]]
+
+        def lifting(x: Array, _: Ints) -> Array:
+            return -side * self.follower.contact_force(self.at(x.ravel())).reshape(x.shape)
+
+        places, values = peaks(lifting, ends[:1], ends[1:], _NARROW * float(np.ptp(ends)))
+        return -float(values[0]), float(places[0])
+
+    def spare(self, share: float) -> float:
+        """Return the smallest contact force less a share of the mean one."""
+        mean = float(np.trapezoid(self.forces, self.edges)) / float(np.ptp(self.edges))
+        return self.least()[0] - share * self.follower.side * mean
+
+
+def _zones(follower: ElasticFollower) -> list[tuple[float, float, int]]:
+    """Return ends of zones of a turn, and into how many equal cells each is cut."""
+    turn, speed = float(np.ptp(follower.knots)), follower.speed
+    small = 2.0 * math.pi * speed / float(follower.frequencies[-1]) / _PER_PERIOD
+    even = turn / _EVEN
+    narrow, fading = min(small, even), _GONE * speed / float(-follower.roots.real.max())
+    if turn <= _FOLLOWED * small:
+        fading = turn
+    found = []
+    for low, high in pairwise(follower.knots.tolist()):
+        middle = min(low + fading, high)
+        for start, end, width in ((low, middle, narrow), (middle, high, even)):
+            if end > start:
+                found.append((start, end, max(math.ceil((end - start) / width), _PER_PIECE)))
+    return found
 
 
 def _scan(step: Array, rows: Array) -> Array:
@@ -308,11 +257,9 @@ def elastic_jump(follower: ElasticFollower) -> float | None:
     low, high, ratio = _speeds(follower)
     if not high:
         return 0.0
-    cells = cells_of(follower, low)
-    shared = cells if cells.followed else None
 
     def least(speed: float) -> float:
-        return Periodic(replace(follower, speed=speed), shared).least()[0]
+        return Periodic(replace(follower, speed=speed)).least()[0]
 
     if least(low) <= 0.0:
         return 0.0
@@ -354,34 +301,33 @@ def _by_series(follower: ElasticFollower, speeds: Array) -> Array:
     return np.array(found)
 
 
-def keeping_stiffness(follower: ElasticFollower, first: float, force: float) -> float:
+def keeping_stiffness(follower: ElasticFollower, share: float, left: float) -> float:
     """Return the least stiffness between last mass and frame that keeps a follower on its cam.
 
     Parameters
     ----------
     follower : ElasticFollower
         The follower, at its speed.
-    first : float
-        A stiffness above 0 of the size that is looked for.
-    force : float
-        Least contact force that is wanted.
+    share, left : float
+        Least contact force that is wanted: a share of the mean one, and a force besides.
 
     Returns
     -------
     float
-        Infinite if none up to a million times the first does.
+        Infinite if none up to that of the softest spring before the masses does.
     """
 
     def lack(stiffness: float) -> float:
-        return force - Periodic(replace(follower, spring=stiffness)).least()[0]
+        return left - Periodic(replace(follower, spring=stiffness)).spare(share)
 
     if lack(0.0) <= 0.0:
         return 0.0
-    low, high = 0.0, first
+    most, (load, size) = min(follower.stiffness), follower.sizes
+    low, high = 0.0, min(0.1 * load / size, most)
     while lack(high) > 0.0:
-        low, high = high, 2.0 * high
-        if high > _STIFFEST * first:
+        if high == most:
             return math.inf
+        low, high = high, min(_STIFFER * high, most)
     return _root(lack, low, high)
 
 

@@ -162,13 +162,11 @@ def _lagging(program: Program, train: Train) -> Expansion:
         return left[:, 0, 0], np.einsum("ng,ng->n", inward[:, :, 0, 0], q)
 
     left, added = put(edges[:-1], np.diff(edges))
-    value, whole = 0.0, 1.0
-    for share, more in zip(left.tolist(), added.tolist(), strict=True):
-        value, whole = share * value + more, share * whole
-    values = [value / (1.0 - whole)]
+    values = [0.0]
     for share, more in zip(left.tolist(), added.tolist(), strict=True):
         values.append(share * values[-1] + more)
-    at_edges = np.array(values)
+    decay = np.cumprod([1.0, *left])
+    at_edges = np.array(values) + values[-1] / (1.0 - decay[-1]) * decay  # as after a turn
 
     def lag(x: Array) -> Array:
         cell = np.clip(edges.searchsorted(x, side="right") - 1, 0, len(edges) - 2)

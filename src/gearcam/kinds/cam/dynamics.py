@@ -15,6 +15,7 @@ from gearcam.base.numerals import formatted
 from gearcam.dynamics.follower_checks import MOVING, MovingFollower
 from gearcam.dynamics.periodic import Periodic
 from gearcam.dynamics.residual import residual
+from gearcam.kinds.cam.fit import law_text
 from gearcam.kinds.cam.moving import MovingCam
 from gearcam.kinds.follower_forces import solved_springs
 from gearcam.kinds.over_driver import over_driver
@@ -24,7 +25,8 @@ from gearcam.pictures.charts import Chart, Limit, Line
 from gearcam.results.study import StudyResult
 
 if TYPE_CHECKING:
-    from gearcam.dynamics.follower_motion import Flight
+    from numpy.typing import ArrayLike
+
     from gearcam.kinds.cam.moving import Moment
     from gearcam.kinds.cam.result import CamResult
     from gearcam.numeric.arrays import Array
@@ -47,6 +49,12 @@ _INSIDE: Final = 100
 
 _FARTHEST: Final = 100.0
 """Largest time of a rise over the natural period in that chart: beyond hardly anything is left."""
+
+_FLOOR: Final = 1e-4
+"""Where that chart ends, unless a phase of the design is below: laws have zeros."""
+
+_HARMONICS: Final = 1e-6
+"""Least harmonic that is shown, over the largest."""
 
 _NOISE: Final = 1e-9
 """Share of the largest value that is 0."""
@@ -76,52 +84,38 @@ def study_dynamics(result: CamResult, progress: Progress) -> StudyResult:
     with result.stage("dynamics"):
         moving = MovingCam(result)
         moment = moving.at(moving.places)
-        _ = moment.normal
         progress("jump", 1, 2)
-        findings = ()
         if moving.elastic:
-            findings = run_checks(MOVING, _checked(moving, moment), result.design.limits)
+            findings = run_checks(MOVING, _checked(moment), result.design.limits)
         else:  # of a rigid follower the forces tell where it leaves its cam
             found = result.study("forces").study_findings
             findings = tuple(one for one in found if one.code == "lift-off")
-        facts = _facts(moving, moment)
+        facts = _facts(moment)
     return StudyResult(
         result=result,
         study=result.kind.studies["dynamics"],
         file="dynamics.csv",
-        table=_columns(moving, moving.at(moving.rows)),
+        table=_columns(moving.at(moving.rows)),
         group=facts,
         study_findings=findings,
-        drawn=partial(_charts, moving, moment),
+        drawn=partial(_charts, moment),
     )
 
 
-def _timed(moving: MovingCam) -> list[tuple[str, float]]:
-    """Return names of velocity and acceleration, with their units over those by the angle."""
-    motion = moving.result.cam.motions[0]
-    return list(motion.timed_scales(moving.speed).items())
-
-
-def _lift(moving: MovingCam) -> tuple[float, str]:
-    """Return the unit of lifts over that inside, and its name."""
-    return moving.result.cam.motions[0].follower.lift_unit
-
-
-def _columns(moving: MovingCam, moment: Moment) -> dict[str, Any]:
+def _columns(moment: Moment) -> dict[str, Any]:
     """Return the columns of ``dynamics.csv``."""
-    driver, drive = moving.result.driver, moving.result.design.drive
-    (scale, unit), (load_scale, _, suffix) = _lift(moving), moving.result.follower.load_unit
-    last, statics = moment.motions[-1], moment.statics
-    velocity, acceleration = _timed(moving)[:2]
-    effort, per = drive.effort
+    moving, result = moment.moving, moment.moving.result
+    (scale, unit), (load_scale, _, suffix) = moving.lift_unit, result.follower.load_unit
+    velocity, acceleration = list(moving.timed.items())[:2]
+    effort, per = result.design.drive.effort
     columns = {
         "t_s": moment.x / moving.speed,
-        driver.column: driver.scale * moment.x,
+        result.driver.column: result.driver.scale * moment.x,
         f"lift_{unit}": scale * moment.rigid.s,
         **{f"x{k}_{unit}": scale * one.s for k, one in enumerate(moment.motions, 1)},
-        velocity[0]: velocity[1] * last.ds,
-        acceleration[0]: acceleration[1] * last.d2s,
-        f"load_{suffix}": load_scale * statics.against,
+        velocity[0]: velocity[1] * moment.motions[-1].ds,
+        acceleration[0]: acceleration[1] * moment.motions[-1].d2s,
+        f"load_{suffix}": load_scale * moment.statics.against,
         "contact_n": moment.normal,
         "contact": moment.contact.astype(int),
         effort: per * moment.torque,
@@ -133,105 +127,85 @@ def _columns(moving: MovingCam, moment: Moment) -> dict[str, Any]:
     }
 
 
-def _at(moving: MovingCam, moment: Moment, index: int) -> str:
-    return moving.result.driver.place(float(moment.x[index]))
+def _acceleration(moving: MovingCam) -> tuple[str, float]:
+    """Return the unit of accelerations in time, and that over those by the angle."""
+    _, (name, per), *_ = moving.timed.items()
+    return name.removeprefix("acceleration_").replace("_", "/"), per
 
 
-def _range(moving: MovingCam, moment: Moment, values: Array, label: str, unit: str) -> Fact | None:
+def _range(moment: Moment, values: Array, label: str, unit: str) -> Fact | None:
     """Return least and largest value, with the place of the largest."""
     values = np.where(np.isfinite(values), values, np.nan)
     if np.isnan(values).all():
         return None
     ends = extent(float(np.nanmin(values)), float(np.nanmax(values)))
-    place = f"largest {_at(moving, moment, int(np.nanargmax(values)))}"
+    place = f"largest {moment.place(int(np.nanargmax(values)))}"
     noise = _NOISE * float(np.nanmax(np.abs(values)))
     return Fact(ends, label, place=place, unit=unit, shown=True, noise=noise)
 
 
-def _dwells(moving: MovingCam, moment: Moment) -> list[tuple[float, float, float]]:
-    """Return ends of each dwell, rad, and the largest distance from rest in it."""
-    found = []
-    for one in moving.result.program.stretches if moving.elastic else ():
-        inside = (moment.x >= one.start) & (moment.x < one.end)
-        if one.kind == "dwell" and inside.any():
-            found.append((one.start, one.end, float(np.abs(moment.residual[inside]).max())))
-    return found
-
-
-def _arc(moving: MovingCam, flight: Flight) -> str:
-    """Return an arc in words."""
-    low, high = (formatted(math.degrees(one), 5) for one in (flight.start, flight.end))
-    return f"{moving.result.driver.symbol} = {low} to {high} deg"
-
-
-def _impact(moving: MovingCam) -> float:
-    """Return the largest speed of impact, in the unit of velocities; 0 without any."""
-    scale = _lift(moving)[0]
-    return scale * max((one.impact for one in moving.turn.flights), default=0.0)
-
-
-def _checked(moving: MovingCam, moment: Moment) -> MovingFollower:
+def _checked(moment: Moment) -> MovingFollower:
     """Return what is checked."""
-    turn, drive = moving.turn, moving.result.design.drive
-    total = float(np.ptp(moving.result.program.range))
-    dwells = _dwells(moving, moment)
-    worst = max(dwells, key=lambda one: one[2], default=(0.0, 0.0, 0.0))
-    low, high = (moving.result.driver.text(one) for one in worst[:2])
-    normal, least = moment.normal, math.nan
+    moving, turn, driver = moment.moving, moment.moving.turn, moment.moving.result.driver
+    (scale, unit), least = moving.lift_unit, math.nan
+    force = moving.follower.side * turn.contact_force(moment.x)
     if not moving.held:
-        least = float(np.nanmin(normal) / np.nanmean(normal))
+        mean = np.trapezoid(force, moment.x) / moving.result.program.period
+        least = float(force.min() / mean)
+    worst = max(moment.dwells, key=lambda one: one[2], default=(0.0, 0.0, 0.0))
+    arcs = [[formatted(math.degrees(x), 5) for x in (one.start, one.end)] for one in turn.flights]
+    impacts = [scale * one.impact for one in turn.flights if not math.isnan(one.impact)]
     return MovingFollower(
-        flights=[_arc(moving, one) for one in turn.flights],
-        impact=_impact(moving),
-        unit=f"{_lift(moving)[1]}/s",
-        stays=drive.words(moving.jump) if moving.jump else "",
+        flights=[f"{driver.symbol} = {low} to {high} deg" for low, high in arcs],
+        impact=max(impacts, default=None),
+        unit=f"{unit}/s",
+        stays=moving.result.design.drive.words(moving.jump) if moving.jump else "",
         least=least,
-        least_at=_at(moving, moment, int(np.nanargmin(normal))),
-        residual=worst[2] / total,
-        residual_at=f"dwell from {low} to {high}",
-        repeats=turn.repeats,
+        least_at=moment.place(int(np.argmin(force))),
+        residual=worst[2] / moving.rise,
+        residual_at=f"dwell from {driver.text(worst[0])} to {driver.text(worst[1])}",
+        restless=0 if turn.repeats else turn.turns,
         energy_residue=turn.energy_residue,
         tolerance=turn.tolerance,
     )
 
 
-def _facts(moving: MovingCam, moment: Moment) -> Tree:
+def _facts(moment: Moment) -> Tree:
     """Return the facts of the study."""
-    result, limits = moving.result, moving.result.design.limits
-    effort, scale = result.design.drive.effort
+    moving = moment.moving
+    effort, scale = moving.result.design.drive.effort
     pressure = np.where(moment.contact, moment.pressure, np.nan)
-    (name, per), peak = _timed(moving)[1], float(np.abs(moment.motions[-1].d2s).max())
-    rigid = float(np.abs(moment.rigid.d2s).max())
+    acceleration, per = _acceleration(moving)
+    peak, rigid = (float(np.abs(one.d2s).max()) for one in (moment.motions[-1], moment.rigid))
     tree: Tree = {
         "contact_force_n": _range(
-            moving, moment, moment.normal, "normal force between cam and follower", "N"
+            moment, moment.normal, "normal force between cam and follower", "N"
         ),
         "jump_rpm": _jumps(moving),
         "acceleration": {
-            f"peak{name.removeprefix('acceleration')}": Fact(
-                per * peak, "largest acceleration of the follower", shown=True
+            f"peak_{acceleration.replace('/', '_')}": Fact(
+                per * peak, "largest acceleration of the moving follower", shown=True
             ),
             "over_rigid": Fact(peak / rigid, "over that of a rigid follower", unit=""),
         },
-        "pressure_mpa": _range(moving, moment, pressure, "contact pressure", "MPa"),
-        effort: _range(
-            moving, moment, scale * moment.torque,
-            "torque of the cam", "N m",
-        ),
+        "pressure_mpa": _range(moment, pressure, "contact pressure", "MPa"),
+        effort: _range(moment, scale * moment.torque, "torque of the cam", "N m"),
         "spring": solved_springs(moving.loads, moving.solved) or None,
-    }  # fmt: skip
-    if not moving.elastic:
-        return tree
-    turn, follower = moving.turn, moving.follower
-    unit_scale, unit = _lift(moving)
-    load_scale, load_unit, suffix = result.follower.load_unit
-    bend, per_unit = ("nm_rad", 1e-3) if result.follower.angular else ("n_mm", 1.0)
-    least = limit_of(MOVING, "residual-vibration", limits)
-    total = unit_scale * float(np.ptp(result.program.range))
+    }
+    return tree | _elastic_facts(moment) if moving.elastic else tree
+
+
+def _elastic_facts(moment: Moment) -> Tree:
+    """Return the facts of an elastic follower: vibrations, flights, how exact all is."""
+    moving, turn, follower = moment.moving, moment.moving.turn, moment.moving.result.follower
+    (scale, unit), (load_scale, load_unit, suffix) = moving.lift_unit, follower.load_unit
+    bend, per_unit = ("nm_rad", 1e-3) if follower.angular else ("n_mm", 1.0)
+    share = limit_of(MOVING, "residual-vibration", moving.result.design.limits)
+    most, label = share * scale * moving.rise, "vibration in the dwell"
     force_error, place_error = turn.error
-    hertz = (follower.frequencies / (2.0 * math.pi)).tolist()
-    contact = None if moving.spec.contact_stiffness is None else moving.contact_stiffness
-    return tree | {
+    hertz = (moving.follower.frequencies / (2.0 * math.pi)).tolist()
+    contact = moving.contact_stiffness
+    return {
         "natural_frequency_hz": Fact(
             hertz,
             "natural frequencies",
@@ -242,23 +216,15 @@ def _facts(moving: MovingCam, moment: Moment) -> Tree:
         if contact is None
         else Fact(per_unit * contact, "stiffness of the contact along the lift"),
         "lost": [
-            {
-                "from_deg": math.degrees(one.start),
-                "to_deg": math.degrees(one.end),
-                f"impact_{unit}_s": None if math.isnan(one.impact) else unit_scale * one.impact,
-            }
+            _ends(one.start, one.end)
+            | {f"impact_{unit}_s": None if math.isnan(one.impact) else scale * one.impact}
             for one in turn.flights
         ]
         or None,
         "residual": [
-            {
-                "from_deg": math.degrees(low),
-                "to_deg": math.degrees(high),
-                f"residual_{unit}": Fact(
-                    unit_scale * swing, "vibration in the dwell", at_most=least * total, unit=unit
-                ),
-            }
-            for low, high, swing in _dwells(moving, moment)
+            _ends(low, high)
+            | {f"residual_{unit}": Fact(scale * swing, label, at_most=most, unit=unit)}
+            for low, high, swing in moment.dwells
         ]
         or None,
         "method": turn.method,
@@ -268,8 +234,12 @@ def _facts(moving: MovingCam, moment: Moment) -> Tree:
         f"error_{suffix}": Fact(
             load_scale * force_error, "error of the contact force along the lift", unit=load_unit
         ),
-        f"error_{unit}": Fact(unit_scale * place_error, "error of the follower's place", unit=unit),
+        f"error_{unit}": Fact(scale * place_error, "error of the follower's place", unit=unit),
     }
+
+
+def _ends(low: float, high: float) -> Tree:
+    return {"from_deg": math.degrees(low), "to_deg": math.degrees(high)}
 
 
 def _jumps(moving: MovingCam) -> Tree | None:
@@ -288,60 +258,55 @@ def _jumps(moving: MovingCam) -> Tree | None:
     return found
 
 
-def _charts(moving: MovingCam, moment: Moment) -> dict[str, Chart]:
+def _charts(moment: Moment) -> dict[str, Chart]:
     """Return the charts of the study."""
+    moving = moment.moving
     chart, x = over_driver(moving.result), moving.result.driver.scale * moment.x
-    (scale, unit), (name, per) = _lift(moving), _timed(moving)[1]
+    (scale, unit), (acceleration, per) = moving.lift_unit, _acceleration(moving)
     rigid = moving.under.statics(moment.x, np.ones_like(moment.x))
-    of_rigid = np.where(rigid.lifted, 0.0, rigid.force)
+
+    def lines(of_moving: Array, of_rigid: Array) -> tuple[Line, ...]:
+        names = ("moving", "rigid") if moving.elastic else ("rigid",)
+        pairs = zip(names, (of_moving, of_rigid), strict=False)
+        return tuple(Line(label=f"{name} follower", x=x, y=y) for name, y in pairs)
+
     charts = {
         "contact": chart(
             title="Normal force between cam and follower",
             y="normal force, N",
-            lines=(
-                Line(label="moving follower", x=x, y=moment.normal),
-                Line(label="rigid follower", x=x, y=of_rigid),
-            ),
+            lines=lines(moment.normal, np.where(rigid.lifted, 0.0, rigid.force)),
         ),
-        "lag": chart(
+        "acceleration": chart(
+            title="Acceleration of the moving follower",
+            y=f"acceleration, {acceleration}",
+            lines=lines(per * moment.motions[-1].d2s, per * moment.rigid.d2s),
+        ),
+    }
+    if moving.elastic:
+        charts["lag"] = chart(
             title="Follower's place less the lift",
             y=f"difference, {unit}",
             lines=tuple(
                 Line(label=f"mass {k}", x=x, y=scale * (one.s - moment.rigid.s))
                 for k, one in enumerate(moment.motions, 1)
             ),
-        ),
-        "acceleration": chart(
-            title="Acceleration of the follower",
-            y=f"acceleration, {name.removeprefix('acceleration_').replace('_', '/')}",
-            lines=(
-                Line(label="moving follower", x=x, y=per * moment.motions[-1].d2s),
-                Line(label="rigid follower", x=x, y=per * moment.rigid.d2s),
-            ),
-        ),
-    }
-    if moving.elastic:
+        )
         charts["spectrum"] = _spectrum(moving)
         charts["residual"] = _residuals(moving)
-        if any(one.kind == "dwell" for one in moving.result.program.stretches):
-            charts["speed"] = _over_speed(moving)
+        if moment.dwells:
+            charts["speed"] = _over_speed(moment)
     return charts
 
 
-def _over_speed(moving: MovingCam) -> Chart:
+def _over_speed(moment: Moment) -> Chart:
     """Return the vibration in the dwells of this cam at other speeds, while contact is kept."""
-    (scale, unit), quantity = _lift(moving), moving.result.design.drive.quantity
-    x = np.concatenate(
-        [
-            np.linspace(one.start, one.end, _INSIDE + 1)[:-1]
-            for one in moving.result.program.stretches
-            if one.kind == "dwell"
-        ]
-    )
+    moving = moment.moving
+    (scale, unit), quantity = moving.lift_unit, moving.result.design.drive.quantity
+    x = np.concatenate([np.linspace(low, high, _INSIDE + 1)[:-1] for low, high, _ in moment.dwells])
     speeds, found = moving.speed * np.linspace(0.5, 1.5, _SPEEDS), []
     for speed in speeds.tolist():
         follower = replace(moving.follower, speed=speed)
-        lag = Periodic(follower).at(x)[2 * len(follower.masses) - 2]
+        lag = Periodic(follower).at(x)[follower.last]
         found.append(float(np.abs(lag - follower.rest(x)[-1]).max()))
     return Chart(
         title="Largest vibration in a dwell over the speed, in contact",
@@ -352,51 +317,58 @@ def _over_speed(moving: MovingCam) -> Chart:
 
 
 def _spectrum(moving: MovingCam) -> Chart:
-    """Return the harmonics of the accelerations over the turn."""
+    """Return the harmonics of the accelerations over the turn, without those that are nothing."""
     even = moving.result.program.period * np.arange(_SPECTRUM) / _SPECTRUM
-    moment, (name, per) = moving.at(even), _timed(moving)[1]
+    moment, (unit, per) = moving.at(even), _acceleration(moving)
     most = int(min(1.5 * moving.follower.periods + 10.0, _SPECTRUM // 4))
-
-    def harmonics(values: Array) -> Array:
-        return 2.0 / _SPECTRUM * np.abs(np.fft.rfft(per * values))[1 : most + 1]
-
     order = np.arange(1.0, most + 1.0)
-    unit = name.removeprefix("acceleration_").replace("_", "/")
+    both = np.array([moment.motions[-1].d2s, moment.rigid.d2s])
+    sizes = 2.0 / _SPECTRUM * np.abs(np.fft.rfft(per * both))[:, 1 : most + 1]
+    seen = sizes > _HARMONICS * sizes.max()
     return Chart(
         title="Harmonics of the acceleration",
         x="harmonic of the turn",
         y=f"amplitude, {unit}",
         log="y",
-        lines=(
-            Line(label="moving follower", x=order, y=harmonics(moment.motions[-1].d2s)),
-            Line(label="rigid follower", x=order, y=harmonics(moment.rigid.d2s)),
+        lines=tuple(
+            Line(label=f"{label} follower", x=order[own], y=size[own], dots=True)
+            for label, size, own in zip(("moving", "rigid"), sizes, seen, strict=True)
         ),
     )
 
 
 def _residuals(moving: MovingCam) -> Chart:
     """Return the residual vibrations of laws over the time of a rise, and of the design's own."""
-    result, tolerances = moving.result, moving.result.tolerances
-    frequency = float(moving.follower.frequencies[0]) / (2.0 * math.pi * moving.follower.speed)
-    laws: dict[str, Any] = {name: MOTION_LAWS[name].example for name in _SHOWN}
-    dots = []
+    result, follower = moving.result, moving.follower
+    frequency = float(follower.frequencies[0]) / (2.0 * math.pi * follower.speed)
     motion = result.design.motion
     phases = motion if isinstance(motion, tuple) else ()
-    for phase, placed in zip(phases, result.program.stretches, strict=False):
-        if isinstance(phase, RisePhase):
-            ratio = np.array([frequency * (placed.end - placed.start)])
-            if ratio[0] > _FARTHEST:
-                continue
-            y = residual(phase.law.build(tolerances).function, ratio)
-            dots.append((f"{placed.kind} from {formatted(math.degrees(placed.start), 4)} deg",
-                         ratio, y))  # fmt: skip
-    top = max(6.0, *(1.2 * float(ratio[0]) for _, ratio, _ in dots)) if dots else 6.0
-    ratios = np.linspace(0.0, top, _RATIOS)
-    lines = [
-        Line(label=name, x=ratios, y=residual(law.build(tolerances).function, ratios))
-        for name, law in laws.items()
+    own = [
+        (one.law, frequency * (placed.end - placed.start))
+        for one, placed in zip(phases, result.program.stretches, strict=False)
+        if isinstance(one, RisePhase)
     ]
-    lines += [Line(label=label, x=x, y=y, dots=True) for label, x, y in dots]
+    own = [(law, ratio) for law, ratio in own if ratio <= _FARTHEST]
+
+    def vibration(law: Any, ratios: ArrayLike) -> Array:
+        return residual(law.build(result.tolerances).function, ratios)
+
+    shown = [MOTION_LAWS[name].example for name in _SHOWN]
+    laws = {law_text(law): law for law in [*shown, *(law for law, _ in own)]}
+    of_phases = np.array([vibration(law, [ratio])[0] for law, ratio in own])
+    ratios = np.linspace(0.0, max([6.0, *(1.2 * ratio for _, ratio in own)]), _RATIOS)
+    of_phases[of_phases < _NOISE] = np.nan  # the zero of a law
+    floor = min([_FLOOR, *of_phases[np.isfinite(of_phases)]])
+    lines = [
+        Line(label=name, x=ratios, y=np.where(y >= floor, y, np.nan))
+        for name, law in laws.items()
+        for y in [vibration(law, ratios)]
+    ]
+    if own:
+        polydyne = getattr(result.design.drive, "polydyne", False)
+        label = "phases of this cam" + (", not corrected" if polydyne else "")
+        places = np.array([ratio for _, ratio in own])
+        lines.append(Line(label=label, x=places, y=of_phases, dots=True))
     limit = limit_of(MOVING, "residual-vibration", result.design.limits)
     return Chart(
         title="Vibration after a rise without damping, over its height",

@@ -10,8 +10,11 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearcam.base.errors import DesignError, InfeasibleError, MissingExtraError, Problem
+from gearcam.base.findings import limit_of
+from gearcam.base.numerals import formatted
 from gearcam.cams.spec import POINTED
 from gearcam.dynamics.follower import ElasticFollower, damping_of
+from gearcam.dynamics.follower_checks import MOVING
 from gearcam.dynamics.follower_motion import settle
 from gearcam.dynamics.periodic import Periodic, elastic_jump, keeping_stiffness
 from gearcam.kinds.under_load import UnderLoad
@@ -39,8 +42,9 @@ _PER_PERIOD: Final = 12
 _MOST: Final = 20_000
 """Largest number of places."""
 
-_LEFT: Final = 10.0
-"""Least contact force with a spring that is solved for, over the load and the tolerance."""
+_LEFT: Final = 1e-5
+"""What a spring that is solved for leaves above the least contact force, over the load, and ten
+tolerances at least: so does one in six digits."""
 
 _NARROW: Final = 1e-8
 """Width, over the turn, to which an extreme is narrowed."""
@@ -64,14 +68,6 @@ def demand(design: Any) -> None:
     MissingExtraError
         If scipy is not installed.
     """
-    faults = _faults(design)
-    for key, what, near in faults:
-        raise DesignError([Problem(what, file=design.source, key=key, allowed=near)])
-    MissingExtraError.unless("scipy", what="dynamics", extra="dynamics")
-
-
-def _faults(design: Any) -> list[tuple[str, str, str]]:
-    """Return what a design lacks: key, message, what is allowed."""
     dynamics = design.dynamics
     behind = any(one.of == "train" for one in design.mass)
     blunt = design.follower.type in ("flat", *POINTED)
@@ -81,19 +77,27 @@ def _faults(design: Any) -> list[tuple[str, str, str]]:
     slides = "a cam that slides to and fro has no constant speed: it has no dynamics here"
     still = "is missing: dynamics need the speed of the cam"
     train = dynamics.train_key(oscillating=design.follower.oscillating)
+    contact = "dynamics.contact_stiffness_n_mm"
+    translates = design.form == "translating"
     cases = (
-        (design.form == "translating", "cam.form", slides, "another form"),
-        (design.drive.speed is None, "drive.speed_rpm", still, "a speed above 0"),
+        (translates, "cam.form", slides, "another form"),
+        (not translates and design.drive.speed is None, "drive.speed_rpm", still,
+         "a speed above 0"),
         (not on_cam, "mass", "is missing: dynamics need the mass of the follower",
          '[[mass]] with of = "follower"'),
-        (behind and dynamics.train is None, train, f"{lacks} the train",
-         "a number above 0"),
-        (behind and dynamics.contact_stiffness is None, "dynamics.contact_stiffness_n_mm",
-         f"{lacks} the contact too", 'a number above 0, or "hertz"'),
-        (dynamics.contact_stiffness == "hertz" and blunt, "dynamics.contact_stiffness_n_mm", flat,
-         "a number above 0"),
+        (behind and dynamics.train is None, train, f"{lacks} the train", "a number above 0"),
+        (behind and dynamics.contact_stiffness is None, contact, f"{lacks} the contact too",
+         'a number above 0, or "hertz"'),
+        (dynamics.contact_stiffness == "hertz" and blunt, contact, flat, "a number above 0"),
     )  # fmt: skip
-    return [case[1:] for case in cases if case[0]]
+    problems = [
+        Problem(what, file=design.source, key=key, allowed=near)
+        for wrong, key, what, near in cases
+        if wrong
+    ]
+    if problems:
+        raise DesignError(problems)
+    MissingExtraError.unless("scipy", what="dynamics", extra="dynamics")
 
 
 class MovingCam:
@@ -125,6 +129,21 @@ class MovingCam:
         self.held = len(result.touches) > 1
 
     @property
+    def lift_unit(self) -> tuple[float, str]:
+        """The unit of lifts over that inside, and its name."""
+        return self.result.cam.motions[0].follower.lift_unit
+
+    @property
+    def timed(self) -> dict[str, float]:
+        """Velocity and further derivatives in time over those by the angle, by their names."""
+        return self.result.cam.motions[0].timed_scales(self.speed)
+
+    @property
+    def rise(self) -> float:
+        """The whole lift, mm or rad."""
+        return float(np.ptp(self.result.program.range))
+
+    @property
     def elastic(self) -> bool:
         """Whether train or contact are elastic."""
         return self.spec.elastic
@@ -139,30 +158,32 @@ class MovingCam:
     def solved(self) -> dict[str, float]:
         """What springs that are solved for need to keep the elastic follower on its cam.
 
-        Without friction, at the speed of the drive, with ten tolerances of the largest load left;
-        as for a rigid follower where it is rigid, or pressed from above or held.
+        Without friction, at the speed of the drive, with the least contact force that the check
+        `near-jump` asks for; as for a rigid follower where it is rigid, or pressed from above or
+        held.
 
         Raises
         ------
         InfeasibleError
-            If no stiffness does.
+            If none does that is softer than the train.
         """
         loads = self._rigid
         if not (self.elastic and loads.solved) or self.held or loads.side < 0.0:
             return loads.solved
         (what,) = loads.solved
         without = self._follower(self._with({what: 0.0}))
-        load, size = without.sizes
-        left = _LEFT * self.spec.tolerance * load
+        share = limit_of(MOVING, "near-jump", self.result.design.limits)
+        left = max(_LEFT, 10.0 * self.spec.tolerance) * without.sizes[0]
         if what == "preload":
-            lack = left - Periodic(without).least()[0]
-            return {what: max(0.0, lack / without.rest_share)}
-        found = keeping_stiffness(without, load / size, left) - without.spring
+            lack = left - Periodic(without).spare(share)
+            found = lack / (1.0 - share) / without.rest_share
+        else:
+            found = keeping_stiffness(without, share, left) - without.spring
         if math.isinf(found):
-            spring = next(k for k, one in enumerate(loads.springs) if one.rate == "solve")
-            what = "no stiffness keeps the elastic follower on the cam"
-            where = f"spring[{spring}].stiffness{'_nm_rad' if loads.follower.angular else '_n_mm'}"
-            raise InfeasibleError(what, where=where, nearest="more preload")
+            spring = next(k for k, one in enumerate(loads.springs) if one.solved)
+            told = "no stiffness softer than the train keeps the elastic follower on the cam, with "
+            told += f"{formatted(share)} of the mean contact force at least"
+            raise InfeasibleError(told, where=f"spring[{spring}]", nearest="more preload")
         return {what: max(0.0, found)}
 
     def _with(self, solved: dict[str, float]) -> Loads:
@@ -187,7 +208,7 @@ class MovingCam:
         if any(one.against for one in given):
             found.append(np.array([one.start for one in program.stretches]))
         knots = np.unique(np.concatenate(found))
-        knots = knots[(knots > _APART) & (knots < program.period - _APART)]
+        knots = knots[knots < program.period - _APART]
         knots = knots[np.diff(knots, prepend=0.0) > _APART * program.period]
         return np.concatenate([[0.0], knots, [program.period]])
 
@@ -263,8 +284,9 @@ class MovingCam:
         if not self.held and self.follower.side * periodic.forces[0] <= 0.0:
             start = np.zeros_like(start)
             start[0::2] = self.follower.rest(np.zeros(1))[:, 0]
-        many = {"turns": spec.turns, "method": spec.method, "tolerance": spec.tolerance}
-        return settle(self.follower, start, **many)
+        return settle(
+            self.follower, start, turns=spec.turns, method=spec.method, tolerance=spec.tolerance
+        )
 
     @cached_property
     def places(self) -> Array:
@@ -287,7 +309,8 @@ class MovingCam:
 
     def _beside(self, even: Array) -> Array:
         even[-1] = np.nextafter(even[-1], 0.0)
-        switches = [x for x, _, _ in self.turn.motion.switches] if self.elastic else []
+        flights = self.turn.flights if self.elastic else ()
+        switches = [x for one in flights for x in (one.start, one.end)]
         return with_both_sides(even, np.append(self.knots, switches))
 
     def at(self, x: Array) -> Moment:
@@ -307,27 +330,27 @@ class Moment:
     """
 
     def __init__(self, moving: MovingCam, x: Array) -> None:
-        self._moving, self.x = moving, x
+        self.moving, self.x = moving, x
         self.rigid = moving.loads.motion(x)
 
     @cached_property
     def _states(self) -> tuple[Array, Mask]:
-        return self._moving.turn.states(self.x)
+        return self.moving.turn.states(self.x)
 
     @property
     def contact(self) -> Mask:
         """Where the follower is on its cam."""
-        if not self._moving.elastic:
+        if not self.moving.elastic:
             return ~self.statics.lifted
         return self._states[1]
 
     @cached_property
     def motions(self) -> list[DrivenMotion]:
         """The motion of each mass."""
-        if not self._moving.elastic:
+        if not self.moving.elastic:
             return [self.rigid]
         states, contact = self._states
-        found = self._moving.follower.accelerations(self.x, states, contact)
+        found = self.moving.follower.accelerations(self.x, states, contact)
         return [
             DrivenMotion(
                 self.x, self.rigid.s + states[2 * k], self.rigid.ds + states[2 * k + 1], one
@@ -335,15 +358,27 @@ class Moment:
             for k, one in enumerate(found)
         ]
 
-    @property
-    def residual(self) -> Array:
-        """Distance of the last mass from its place at rest, mm or rad."""
-        return self.motions[-1].s - self.rigid.s - self._moving.follower.rest(self.x)[-1]
+    @cached_property
+    def dwells(self) -> list[tuple[float, float, float]]:
+        """Ends of each dwell, and the farthest that an elastic follower is from rest in it."""
+        found, program = [], self.moving.result.program
+        for one in program.stretches if self.moving.elastic else ():
+            inside = (self.x >= one.start) & (self.x < one.end)
+            if one.kind == "dwell" and inside.any():
+                x = self.x[inside]
+                follower = self.moving.follower
+                apart = self._states[0][follower.last, inside] - follower.rest(x)[-1]
+                found.append((one.start, one.end, float(np.abs(apart).max())))
+        return found
+
+    def place(self, index: int) -> str:
+        """Return an angle in words."""
+        return self.moving.result.driver.place(float(self.x[index]))
 
     @cached_property
     def statics(self) -> Statics:
         """The forces, with that of the moving follower along the lift."""
-        moving, loads = self._moving, self._moving.loads
+        moving, loads = self.moving, self.moving.loads
         design, total = moving.result.design, loads.total_load(self.rigid)
         if moving.elastic:
             pressing = sum(
@@ -364,7 +399,7 @@ class Moment:
     @property
     def pressure(self) -> Array:
         """Contact pressure, MPa: 0 in flight, infinite on an edge."""
-        return np.where(self.contact, self._moving.under.pressure(self.statics), 0.0)
+        return np.where(self.contact, self.moving.under.pressure(self.statics), 0.0)
 
     @property
     def torque(self) -> Array:

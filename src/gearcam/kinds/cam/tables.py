@@ -220,7 +220,7 @@ class FollowerDynamicsSpec(ShortRepr):
         TEXT,
         default="auto",
         choices=METHODS,
-        doc="integrator; auto: dop853 up to 100 natural periods in a turn, else radau",
+        doc="integrator; auto: dop853 up to 300 natural periods in a turn, else radau",
     )
     tolerance: float = param(
         NUMBER, default=1e-6, ge=1e-12, le=1e-3, doc="relative tolerance of a step"

@@ -11,6 +11,7 @@ import pytest
 import gearcam as gc
 from gearcam.base.findings import run_checks
 from gearcam.dynamics.follower_checks import MOVING, MovingFollower
+from gearcam.dynamics.polydyne import Train, polydyne
 from gearcam.kinds.cam import moving
 
 RPM = math.pi / 30.0
@@ -44,6 +45,30 @@ def test_the_train_of_the_reference() -> None:
     assert fact(study, "error_n") < 1e-2
 
 
+def test_what_the_findings_state_is_what_the_facts_do() -> None:
+    """The normal force of a flat follower is along the lift; the lift is 10 mm."""
+    design = TRAIN.with_({"limits.residual_vibration": 0.001})
+    near, swings = studied(design).study_findings
+    study = studied(TRAIN)
+    theta = study.columns["theta_deg"]
+    mean = np.trapezoid(study.columns["contact_n"], theta) / 360.0
+    assert near.value == pytest.approx(fact(study, "contact_force_n.min") / mean, rel=1e-3)
+    assert near.where == "at 197.63 deg"
+    first, second = fact(study, "residual")
+    assert swings.value == pytest.approx(0.1 * max(first["residual_mm"], second["residual_mm"]))
+    assert study.group["residual"][0]["residual_mm"].at_most == pytest.approx(0.01 * 10.0)
+    assert [one.code for one in (near, swings)] == ["near-jump", "residual-vibration"]
+
+
+def test_it_says_whether_turns_repeat() -> None:
+    for changes, told in (({"drive.speed_rpm": 1200}, False), ({"drive.speed_rpm": 1700}, True)):
+        study = studied(TRAIN, {"dynamics.turns": 7, **changes})
+        (found,) = [one for one in study.study_findings if one.code == "jump"]
+        after = f"After {fact(study, 'turns')} turns it does not repeat itself yet"
+        assert (after in found.message) == told
+        assert fact(study, "repeats") != told
+
+
 def test_beyond_its_jump_it_flies() -> None:
     study = studied(TRAIN, {"drive.speed_rpm": 1200})
     assert "jump" in codes(study)
@@ -59,6 +84,14 @@ def test_beyond_its_jump_it_flies() -> None:
     (found,) = [one for one in study.study_findings if one.code == "jump"]
     assert "up to 1131.86 rpm" in found.message
     assert found.value == pytest.approx(max(one["impact_mm_s"] for one in flights))
+
+
+def test_a_flight_beyond_the_turn_has_no_impact() -> None:
+    study = studied(TRAIN, {"drive.speed_rpm": 8000, "dynamics.turns": 1})
+    assert "impact_mm_s" not in fact(study, "lost")[-1]
+    many = studied(TRAIN, {"drive.speed_rpm": 30_000, "dynamics.turns": 1})
+    (found,) = [one for one in many.study_findings if one.code == "jump"]
+    assert found.value is None
 
 
 def eccentric(**changes: Any) -> gc.Design:
@@ -199,16 +232,31 @@ def test_a_swinging_follower_is_one_that_slides_on_a_long_arm() -> None:
 
 
 @pytest.mark.parametrize("which", ["preload_n", "stiffness_n_mm"])
-def test_a_spring_that_is_solved_for_keeps_the_follower(which: str) -> None:
+@pytest.mark.parametrize(("limit", "told"), [(0.1, "near-jump"), (0.0, "jump")])
+def test_a_spring_that_is_solved_for_keeps_the_follower(
+    which: str, limit: float, told: str
+) -> None:
+    """With the contact force that the check asks for, also with the six digits that are printed."""
     spring = {"stiffness_n_mm": 10, "preload_n": 200, which: "solve"}
-    solved = studied(TRAIN, {"spring": [spring], "drive.speed_rpm": 1150})
+    changes = {"drive.speed_rpm": 1150, "limits.contact_force": limit}
+    solved = studied(TRAIN, {"spring": [spring], **changes})
     value = fact(solved, f"spring.{which}")
-    assert fact(solved, "contact_force_n.min") == pytest.approx(0.0, abs=0.05)
-    built = studied(TRAIN, {"spring": [{**spring, which: value}], "drive.speed_rpm": 1150})
-    assert "jump" not in codes(built)
-    assert fact(built, "jump_rpm.elastic") == pytest.approx(1150.0, abs=0.1)
+    built = studied(TRAIN, {"spring": [{**spring, which: float(f"{value:.6g}")}], **changes})
+    for one in (solved, built):
+        assert not {"jump", "near-jump"} & set(codes(one))
+    forces = built.columns["contact_n"]
+    assert forces.min() == pytest.approx(limit * forces.mean(), rel=0.02, abs=0.5)
+    if not limit:
+        assert fact(built, "jump_rpm.elastic") == pytest.approx(1150.0, abs=0.1)
     weaker = {**spring, which: 0.98 * value}
-    assert "jump" in codes(studied(TRAIN, {"spring": [weaker], "drive.speed_rpm": 1150}))
+    assert told in codes(studied(TRAIN, {"spring": [weaker], **changes}))
+
+
+def test_a_spring_that_would_have_to_be_stiffer_than_the_train_is_refused() -> None:
+    spring = {"stiffness_n_mm": "solve", "preload_n": 20}
+    with pytest.raises(gc.InfeasibleError, match="no stiffness softer than the train") as error:
+        studied(TRAIN, {"spring": [spring], "drive.speed_rpm": 1150})
+    assert "more preload" in str(error.value)
 
 
 def test_residual_vibrations_are_those_of_dwells() -> None:
@@ -222,8 +270,8 @@ def test_residual_vibrations_are_those_of_dwells() -> None:
     swing = abs(math.sin(math.pi * tau) / (math.pi * tau * (1.0 - tau**2)))
     first, second = fact(study, "residual")
     assert (first["from_deg"], second["from_deg"]) == pytest.approx((90.0, 270.0))
-    line = [one for one in study.charts["residual"].lines if one.dots]
-    assert [float(one.y[0]) for one in line] == pytest.approx([swing, swing], abs=1e-12)
+    (dots,) = [one for one in study.charts["residual"].lines if one.dots]
+    assert dots.y == pytest.approx([swing, swing], abs=1e-12)
     assert first["residual_mm"] == pytest.approx(second["residual_mm"], rel=0.05)
     assert first["residual_mm"] < 10.0 * (swing + 1e-3)
 
@@ -282,6 +330,21 @@ def test_a_polydyne_cam_does_not_swing_at_its_speed(damping: float) -> None:
     assert fact(swinging, "residual")[0]["residual_mm"] > 5e-3
 
 
+def test_a_polydyne_lift_ends_as_it_begins_however_much_the_damper_lags() -> None:
+    """At 2 natural periods in a turn a bend is left of the turn before."""
+    program = gc.build(
+        gc.load("profiles/polydyne_cam.toml").with_({"drive.polydyne": False})
+    ).program
+    train = Train(mass=0.5e-3, stiffness=2000.0, damping=1.8, spring=0.0, damper=0.0, speed=1000.0)
+    lift = polydyne(program, train)
+    first, last = (lift.derivatives(np.array([x]), 1) for x in (0.0, 2.0 * math.pi * (1 - 1e-15)))
+    assert first[0] == pytest.approx(last[0], abs=1e-9)
+    s, x = program.derivatives(np.array([1.0, 3.0]), 2), np.array([1.0, 3.0])
+    y = lift.derivatives(x, 1)
+    v, rate = y[0] - s[0], y[1] - s[1]
+    assert 1.8 * 1000.0 * rate + 2000.0 * v == pytest.approx(0.5e-3 * 1e6 * s[2], abs=1e-8)
+
+
 def test_a_polydyne_lift_has_its_own_derivatives() -> None:
     program = gc.build(gc.load("profiles/polydyne_cam.toml")).program
     x, h = np.linspace(0.05, 6.2, 200), 1e-5
@@ -322,9 +385,36 @@ def test_a_polydyne_cam_needs_a_smooth_jerk() -> None:
 
 def test_charts_of_the_study() -> None:
     charts = studied(TRAIN).charts
-    assert list(charts) == ["contact", "lag", "acceleration", "spectrum", "residual", "speed"]
-    assert list(studied(eccentric()).charts) == ["contact", "lag", "acceleration"]
+    assert list(charts) == ["contact", "acceleration", "lag", "spectrum", "residual", "speed"]
+    of_rigid = studied(eccentric()).charts
+    assert list(of_rigid) == ["contact", "acceleration"]
+    for one in of_rigid.values():
+        assert [line.label for line in one.lines] == ["rigid follower"]
     assert [one.label for one in charts["lag"].lines] == ["mass 1", "mass 2"]
+
+
+def test_the_chart_of_vibrations_has_the_laws_of_the_design_down_to_a_floor() -> None:
+    chart = studied("polydyne_cam").charts["residual"]
+    *curves, dots = chart.lines
+    assert [one.label for one in curves][-2:] == ["modified-sine", "4-5-6-7"]
+    assert dots.label == "phases of this cam, not corrected"
+    own = np.interp(dots.x, curves[-1].x, curves[-1].y)
+    assert dots.y == pytest.approx(own, rel=0.02)
+    assert min(np.nanmin(one.y) for one in curves) >= 1e-4
+    quick = studied("polydyne_cam", {"drive.speed_rpm": 380}).charts["residual"].lines
+    assert float(quick[-1].y[0]) < 1e-4
+    assert min(np.nanmin(one.y) for one in quick[:-1]) == pytest.approx(quick[-1].y[0], rel=0.5)
+
+
+def test_harmonics_are_those_of_the_accelerations() -> None:
+    """A harmonic lift has one; nothing that is noise is shown."""
+    design = eccentric(dynamics={"stiffness_n_mm": 2000}, spring=[{"preload_n": 400}])
+    moving, rigid = studied(design).charts["spectrum"].lines
+    square = (1000.0 * RPM) ** 2
+    assert rigid.x.tolist() == [1.0]
+    assert rigid.y == pytest.approx([5.0 * square])
+    share = 2000.0 / (2000.0 - 0.5e-3 * square)
+    assert moving.y == pytest.approx([5.0 * square * share], rel=1e-3)
 
 
 @pytest.mark.parametrize("name", ["groove_cam", "yoke_cam", "conjugate_cams"])
@@ -351,6 +441,15 @@ REFUSED: tuple[tuple[str, dict[str, Any], str], ...] = (
     ("elastic_valve_train", {"mass": [{"of": "train", "mass_kg": 1}]}, "the mass of the follower"),
     ("translating_cam", {"drive.speed_mm_s": 10, "mass": [{"mass_kg": 1}]}, "cam.form"),
 )
+
+
+def test_all_that_is_missing_is_told_at_once() -> None:
+    with pytest.raises(gc.DesignError) as error:
+        studied(TRAIN, {"mass": [{"of": "train", "mass_kg": 1}], "dynamics": {}, "drive": {}})
+    keys = [one.key for one in error.value.problems]
+    assert keys == [
+        "drive.speed_rpm", "mass", "dynamics.stiffness_n_mm", "dynamics.contact_stiffness_n_mm"
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize(("name", "changes", "told"), REFUSED)
@@ -390,7 +489,7 @@ def test_without_scipy_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> No
 def subject(**changes: Any) -> MovingFollower:
     plain: dict[str, Any] = {
         "flights": (), "impact": 0.0, "unit": "mm/s", "stays": "", "least": 0.5, "least_at": "at 1",
-        "residual": 0.001, "residual_at": "dwell", "repeats": True, "energy_residue": 1e-6,
+        "residual": 0.001, "residual_at": "dwell", "restless": 0, "energy_residue": 1e-6,
         "tolerance": 1e-6,
     }  # fmt: skip
     return MovingFollower(**plain | changes)
@@ -413,8 +512,8 @@ def test_findings_just_within_and_beyond(changes: dict[str, Any], found: list[st
 
 
 def test_turns_that_do_not_repeat_are_told() -> None:
-    (found,) = run_checks(MOVING, subject(flights=("a", "b"), impact=1.0, repeats=False), {})
-    assert "do not repeat" in found.message
+    (found,) = run_checks(MOVING, subject(flights=("a", "b"), impact=1.0, restless=8), {})
+    assert "After 8 turns it does not repeat itself yet" in found.message
     assert found.where == "a, and 1 more"
 
 
