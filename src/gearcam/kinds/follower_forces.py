@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.base.facts import Fact, Tree, extent
+from gearcam.base.facts import Fact, Tree
 from gearcam.base.findings import limit_of, run_checks
 from gearcam.base.numerals import formatted, shortened
 from gearcam.base.quantities import TORQUE
 from gearcam.kinds.over_driver import over_driver
+from gearcam.kinds.shared import NOISE, range_fact
 from gearcam.kinds.under_load import UnderLoad, efficiency_away_from_rest
 from gearcam.mechanics.follower_loads import Loads
 from gearcam.mechanics.force_checks import Loaded, on_way
@@ -30,9 +31,6 @@ if TYPE_CHECKING:
     from gearcam.mechanics.statics import Statics
     from gearcam.numeric.arrays import Array, Ints
     from gearcam.results.study import Progress
-
-_NOISE: Final = 1e-9
-"""Share of the largest force that is 0: where another wall begins to carry little is left."""
 
 
 @dataclass(frozen=True)
@@ -167,16 +165,6 @@ def _columns(
     }
 
 
-def _extreme(loaded: Loaded, values: Array, label: str, unit: str) -> Fact | None:
-    """Return the range of some values, with the place of the largest, as a fact."""
-    if np.isnan(values).all():
-        return None
-    ends = extent(float(np.nanmin(values)), float(np.nanmax(values)))
-    place = f"largest {loaded.at(int(np.nanargmax(values)))}"
-    noise = _NOISE * float(np.nanmax(np.abs(values)))
-    return Fact(ends, label, place=place, unit=unit, shown=True, noise=noise)
-
-
 def _facts(
     result: LoadedCam, loads: Loads, loaded: Loaded, release: tuple[float, float, float] | None
 ) -> Tree:
@@ -186,14 +174,14 @@ def _facts(
     without = result.follower_spec.without_friction(design.friction)
     walls = statics.carrying[statics.carrying >= 0]
     tree: Tree = {
-        "normal_n": _extreme(
-            loaded, np.where(statics.lifted, 0.0, statics.force), "normal force", "N"
+        "normal_n": range_fact(
+            np.where(statics.lifted, 0.0, statics.force), "normal force", "N", loaded.at
         ),
-        effort: _extreme(
-            loaded,
+        effort: range_fact(
             scale * statics.torque,
             "torque of the cam" if scale != 1.0 else "force of the drive",
             "N m" if scale != 1.0 else "N",
+            loaded.at,
         ),
         "efficiency": _efficiency(loaded),
         "reserve": _least(loaded, statics.reserve, "share that friction leaves"),
@@ -256,7 +244,7 @@ def _largest(loaded: Loaded, values: Array, label: str) -> Fact | None:
         return None
     index = int(np.nanargmax(np.abs(values)))
     size = float(np.abs(values[index]))
-    noise = _NOISE * float(np.nanmax(loaded.statics.force, initial=0.0))
+    noise = NOISE * float(np.nanmax(loaded.statics.force, initial=0.0))
     return Fact(size, f"largest {label}", place=loaded.at(index), shown=True, noise=noise)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import TYPE_CHECKING, Any, Final
@@ -12,6 +12,7 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import ABOVE, beyond_limit
+from gearcam.base.facts import Fact, extent
 from gearcam.base.quantities import ANGLE, COUNT, TEXT, fixed, param
 from gearcam.base.registry import deferred
 from gearcam.base.rules import Breach, distinct
@@ -27,6 +28,35 @@ if TYPE_CHECKING:
 
 TABLE: Final = "accuracy.csv"
 PAGE: Final = "accuracy.html"
+
+NOISE: Final = 1e-9
+"""Share of the largest value below which a value is 0."""
+
+
+def range_fact(values: Array, label: str, unit: str, at: Callable[[int], str]) -> Fact | None:
+    """Return the range of some values, with the place of the largest, as a fact.
+
+    Parameters
+    ----------
+    values : (n,) array
+        NaN or infinite where they are not known.
+    label, unit : str
+        Of the fact.
+    at : callable
+        ``at(index)`` returns the place of a value in words.
+
+    Returns
+    -------
+    Fact or None
+        None if no value is known.
+    """
+    values = np.where(np.isfinite(values), values, np.nan)
+    if np.isnan(values).all():
+        return None
+    ends = extent(float(np.nanmin(values)), float(np.nanmax(values)))
+    place = f"largest {at(int(np.nanargmax(values)))}"
+    noise = NOISE * float(np.nanmax(np.abs(values)))
+    return Fact(ends, label, place=place, unit=unit, shown=True, noise=noise)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.base.facts import Fact, Tree, extent
+from gearcam.base.facts import Fact, Tree
 from gearcam.base.findings import limit_of, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.dynamics.follower_checks import MOVING, MovingFollower
@@ -19,6 +19,7 @@ from gearcam.kinds.cam.fit import law_text
 from gearcam.kinds.cam.moving import MovingCam
 from gearcam.kinds.follower_forces import solved_springs
 from gearcam.kinds.over_driver import over_driver
+from gearcam.kinds.shared import NOISE, range_fact
 from gearcam.laws.motion import MOTION_LAWS
 from gearcam.laws.phases_of_lift import RisePhase
 from gearcam.pictures.charts import Chart, Limit, Line
@@ -55,9 +56,6 @@ _FLOOR: Final = 1e-4
 
 _HARMONICS: Final = 1e-6
 """Least harmonic that is shown, over the largest."""
-
-_NOISE: Final = 1e-9
-"""Share of the largest value that is 0."""
 
 
 def study_dynamics(result: CamResult, progress: Progress) -> StudyResult:
@@ -133,17 +131,6 @@ def _acceleration(moving: MovingCam) -> tuple[str, float]:
     return name.removeprefix("acceleration_").replace("_", "/"), per
 
 
-def _range(moment: Moment, values: Array, label: str, unit: str) -> Fact | None:
-    """Return least and largest value, with the place of the largest."""
-    values = np.where(np.isfinite(values), values, np.nan)
-    if np.isnan(values).all():
-        return None
-    ends = extent(float(np.nanmin(values)), float(np.nanmax(values)))
-    place = f"largest {moment.place(int(np.nanargmax(values)))}"
-    noise = _NOISE * float(np.nanmax(np.abs(values)))
-    return Fact(ends, label, place=place, unit=unit, shown=True, noise=noise)
-
-
 def _checked(moment: Moment) -> MovingFollower:
     """Return what is checked."""
     moving, turn, driver = moment.moving, moment.moving.turn, moment.moving.result.driver
@@ -178,8 +165,8 @@ def _facts(moment: Moment) -> Tree:
     acceleration, per = _acceleration(moving)
     peak, rigid = (float(np.abs(one.d2s).max()) for one in (moment.motions[-1], moment.rigid))
     tree: Tree = {
-        "contact_force_n": _range(
-            moment, moment.normal, "normal force between cam and follower", "N"
+        "contact_force_n": range_fact(
+            moment.normal, "normal force between cam and follower", "N", moment.place
         ),
         "jump_rpm": _jumps(moving),
         "acceleration": {
@@ -188,8 +175,8 @@ def _facts(moment: Moment) -> Tree:
             ),
             "over_rigid": Fact(peak / rigid, "over that of a rigid follower", unit=""),
         },
-        "pressure_mpa": _range(moment, pressure, "contact pressure", "MPa"),
-        effort: _range(moment, scale * moment.torque, "torque of the cam", "N m"),
+        "pressure_mpa": range_fact(pressure, "contact pressure", "MPa", moment.place),
+        effort: range_fact(scale * moment.torque, "torque of the cam", "N m", moment.place),
         "spring": solved_springs(moving.loads, moving.solved) or None,
     }
     return tree | _elastic_facts(moment) if moving.elastic else tree
@@ -357,7 +344,7 @@ def _residuals(moving: MovingCam) -> Chart:
     laws = {law_text(law): law for law in [*shown, *(law for law, _ in own)]}
     of_phases = np.array([vibration(law, [ratio])[0] for law, ratio in own])
     ratios = np.linspace(0.0, max([6.0, *(1.2 * ratio for _, ratio in own)]), _RATIOS)
-    of_phases[of_phases < _NOISE] = np.nan  # the zero of a law
+    of_phases[of_phases < NOISE] = np.nan  # the zero of a law
     floor = min([_FLOOR, *of_phases[np.isfinite(of_phases)]])
     lines = [
         Line(label=name, x=ratios, y=np.where(y >= floor, y, np.nan))

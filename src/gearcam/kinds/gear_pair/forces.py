@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearcam.base.errors import DesignError, Problem
-from gearcam.base.facts import Fact, Tree, extent
+from gearcam.base.facts import Fact, Tree
 from gearcam.base.findings import limit_of, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import TORQUE
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.kinds.gear_pair.drawn import DRIVER
+from gearcam.kinds.shared import range_fact
 from gearcam.laws.columns import demand as demand_rows
 from gearcam.laws.ratio.span import angle_text
 from gearcam.mechanics.hertz import half_width, line_pressure, yield_pressure
@@ -47,9 +48,6 @@ _NARROW: Final = 1e-9
 
 PRESSURE: Final = "contact pressure, MPa"
 """Axis of charts, and what flanks are coloured by."""
-
-_NOISE: Final = 1e-9
-"""Share of the largest value that is 0."""
 
 
 def demand(design: Any) -> None:
@@ -424,13 +422,9 @@ def extreme_fact(
     Fact or None
         None if no value is known.
     """
-    if np.isnan(values).all():
-        return None
-    ends = extent(float(np.nanmin(values)), float(np.nanmax(values)))
-    most = int(np.nanargmax(values))
-    place = f"largest at {loaded.at(most if rows is None else int(rows[most]))}"
-    noise = _NOISE * float(np.nanmax(np.abs(values)))
-    return Fact(ends, label, place=place, unit=unit, shown=True, noise=noise)
+    return range_fact(
+        values, label, unit, lambda k: f"at {loaded.at(k if rows is None else int(rows[k]))}"
+    )
 
 
 def _efficiency(loaded: LoadedPair) -> Tree | None:
