@@ -8,6 +8,7 @@ is given, and the torque is that which keeps it.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache, partial
@@ -17,6 +18,7 @@ import numpy as np
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import formatted, shortened
+from gearcam.dynamics.machine import Machine
 from gearcam.dynamics.motors import ConstantMotor
 from gearcam.dynamics.rigid import RigidMotion, RigidRun
 
@@ -35,6 +37,9 @@ _DOWN: Final = 0.85
 _UP: Final = 1.25
 """The same where the load drives."""
 
+_FALLEN: Final = 0.01
+"""Error allowed of the speed after a turn, over it."""
+
 _LEAST: Final = 0.02
 """Least speed at which a turn is tried, over the usual one."""
 
@@ -42,10 +47,13 @@ _LARGEST: Final = 1e3
 """Largest one, where the load drives."""
 
 _SAME: Final = 1e-6
-"""Difference of speeds, or energies, over them, up to which a turn is found."""
+"""Difference of speeds, over them, up to which a turn is found; width of what stops in a bracket."""
 
-_CLOSE: Final = 0.05
-"""The same with the coarse tolerance."""
+_ROUGH: Final = 1e-6
+"""Tolerance of the motion with which the speed at an even torque is bracketed."""
+
+_CLOSE: Final = 5e-3
+"""Error of a mean speed found with it, over it: the least speed depends much on the energy."""
 
 _STOPS: Final = 2.0
 """Irregularity of a machine whose least speed is 0."""
@@ -88,13 +96,18 @@ def _gain(run: RigidRun, omega: float) -> float:
 
 
 def _bracket(gain: Callable[[float], float], run: RigidRun) -> tuple[float, float] | None:
-    """Return speeds at the first angle between which the regime is; None if there is none."""
+    """Return speeds at the first angle between which the regime is; None if there is none.
+
+    Of two motions the faster one stays the faster: no speed repeats between one and that to which
+    it falls in a turn, and if the machine stops from one, it stops from all below.
+    """
     high, scale, bends = run.scale, run.scale, run.motor.bends
     while gain(high) > 0.0:
         high = min([_UP * high, *(one for one in bends if one > high)])
         if high > _LARGEST * scale:
             return None
     while True:
+        high = min(high, (1.0 + _FALLEN) * (high + gain(high)))
         low = max([_DOWN * high, *(one for one in bends if one < high)])
         if low < _LEAST * scale:
             return None
@@ -140,9 +153,7 @@ def _too_weak(coarse: RigidRun) -> InfeasibleError:
     share, step = 0.0, 1.0
     for _ in range(_SHARES):
         step *= 0.5
-        machine = replace(coarse.machine, share=share + step)
-        lighter = replace(coarse, machine=machine)
-        if _bracket(partial(_gain, lighter), lighter) is not None:
+        if _runs(coarse, replace(coarse.machine, share=share + step)):
             share += step
     what = "the motor does not turn this load: the machine stops within a turn, from any speed"
     nearest = coarse.machine.lighter.format(formatted(shortened(share, -1e-2 * share, 2)))
@@ -157,13 +168,17 @@ def _too_weak(coarse: RigidRun) -> InfeasibleError:
 def _carrying(coarse: RigidRun) -> float:
     """Return a flywheel, kg m2, that carries a machine through its load; 0 if none does."""
     (_, low), (_, high) = coarse.machine.inertia_ends
-    size = 0.5 * (low + high)
-    for _ in range(_TRIED):
-        size = shortened(4.0 * size, 0.1 * size, 2)
-        heavier = replace(coarse, machine=coarse.machine.with_flywheel(size))
-        if _bracket(partial(_gain, heavier), heavier) is not None:
-            return size
-    return 0.0
+    sizes = 0.5 * (low + high) * 4.0 ** np.arange(1, _TRIED + 1)
+    tried = [shortened(one, 0.025 * one, 2) for one in sizes.tolist()]
+    if not _runs(coarse, coarse.machine.with_flywheel(tried[-1])):
+        return 0.0
+    return next(one for one in tried if _runs(coarse, coarse.machine.with_flywheel(one)))
+
+
+def _runs(coarse: RigidRun, machine: Machine) -> bool:
+    """Return whether a machine has a regime with the motor of a run."""
+    run = replace(coarse, machine=machine)
+    return _bracket(cache(partial(_gain, run)), run) is not None
 
 
 def even_torque(run: RigidRun, mean: float) -> RigidMotion:
@@ -188,18 +203,19 @@ def even_torque(run: RigidRun, mean: float) -> RigidMotion:
     Notes
     -----
     From a given speed the energy gained in a turn rises with the torque, and the mean speed of the
-    turn that gains none rises with the given speed: both roots are bracketed. A motion that stops
-    gains less than nothing, and its mean speed counts as 0.
+    turn that gains none rises with the given speed: both roots are bracketed, above what stops.
     """
     even = RigidMotion(machine=run.machine, motor=None, knots=run.machine.knots, even=mean)
     torque = (even.works[1] + even.works[2]) / run.machine.period
-    coarse = _EvenTorque(run=replace(run, rtol=_COARSE), mean=mean, torque=torque, exact=_COARSE)
+    coarse = _EvenTorque(run=replace(run, rtol=_ROUGH), mean=mean, torque=torque, exact=_COARSE)
     near = coarse.speed(mean, 1.0 - _DOWN)
-    if abs(coarse.off(near)) <= _CLOSE * mean:
+    if coarse.off(near) <= _CLOSE * mean:
         fine = _EvenTorque(run=run, mean=mean, torque=torque, exact=_EXACT)
         omega = fine.speed(near, 10.0 * _COARSE)
-        if abs(fine.off(omega)) <= _SAME * mean:
-            return fine.repeated(omega)
+        if fine.off(omega) <= _SAME * mean:
+            found = fine.repeated(omega)
+            assert found is not None
+            return found
     what = "the machine stops within a turn at this mean speed"
     raise InfeasibleError(what, where="drive.speed_rpm", nearest="a flywheel, or more speed")
 
@@ -225,40 +241,58 @@ class _EvenTorque:
     torque: float
     exact: float
 
-    def repeated(self, omega: float) -> RigidMotion:
-        """Return the turn that gains no energy from a speed `omega`, rad/s, at the first angle."""
+    def repeated(self, omega: float) -> RigidMotion | None:
+        """Return the turn that gains no energy from a speed `omega`, rad/s, at the first angle.
+
+        None if a torque that does not stop within the turn gains some.
+        """
         low = float(self.run.machine.knots[0])
         usual, torque = self.run.energy(low, omega), self.torque
 
         def turn(size: float) -> RigidMotion:
             return replace(self.run, motor=ConstantMotor(size)).from_speed(omega)
 
+        @cache
         def gained(size: float) -> float:
-            return turn(size).gained
+            motion = turn(size)
+            return motion.gained if motion.stopped is None else -math.inf
 
         first = gained(torque)
         if abs(first) <= 1e-12 * usual:  # nothing depends on the speed
             return turn(torque)
-        step = max(abs(first), _COARSE * usual) / self.run.machine.period
+        step = max(min(abs(first), usual), _COARSE * usual) / self.run.machine.period
         ends = _beside(
             gained, torque, lambda x: 2.0 * x - torque - step, lambda x: 2.0 * x - torque + step
         )
-        return turn(_root(gained, *ends, self.exact))
+        found, steady = _rising_root(gained, *ends, self.exact)
+        return turn(found) if steady else None
 
     def off(self, omega: float) -> float:
-        """Return by how much its mean speed is above the one that is wanted.
-
-        That of a machine that stops, or would with a little less torque, is 0.
-        """
+        """Return by how much its mean speed is above the one that is wanted; -inf if it stops."""
         motion = self.repeated(omega)
-        usual = self.run.energy(float(self.run.machine.knots[0]), omega)
-        steady = abs(motion.gained) <= max(_SAME, 100.0 * self.exact) * usual
-        return (motion.mean_speed if motion.stopped is None and steady else 0.0) - self.mean
+        return -math.inf if motion is None else motion.mean_speed - self.mean
 
     def speed(self, near: float, part: float) -> float:
-        """Return the speed at the first angle, rad/s, at which nothing is off."""
+        """Return the speed at the first angle, rad/s, at which nothing is off, or the least one."""
         off, down = cache(self.off), 1.0 - part
-        return _root(off, *_beside(off, near, lambda x: down * x, lambda x: x / down), self.exact)
+        ends = _beside(off, near, lambda x: down * x, lambda x: x / down)
+        return _rising_root(off, *ends, self.exact)[0]
+
+
+def _rising_root(
+    rising: Callable[[float], float], low: float, high: float, exact: float
+) -> tuple[float, bool]:
+    """Return the root of a function that is -inf up to some place and rises from there.
+
+    If it is above 0 there, the place and False.
+    """
+    least = max(exact, _SAME) * (high - low)
+    while math.isinf(rising(low)):
+        if high - low <= least:
+            return high, False
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if rising(middle) > 0.0 else (middle, high)
+    return _root(rising, low, high, exact), True
 
 
 def _beside(
