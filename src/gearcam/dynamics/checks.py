@@ -61,14 +61,11 @@ def stalls(moving: MovingMachine, limit: float) -> Iterator[Remark]:  # noqa: AR
     row = motion.machine.rows(stopped)
     driving = 0.0 if motion.motor is None else float(motion.motor.torque(stopped, 0.0))
     lack = motion.machine.resistance(row, 0.0, driving) - driving
-    message = "The machine stops here."
-    if motion.motor is not None and driving:
+    message, severity = "The machine stops here.", "note"
+    if driving:  # it was not to coast
         message = "The motor does not turn the load here, and the machine stops."
-    lacks = max(float(lack), 0.0)
-    if driving:
-        yield Remark(message, moving.place(stopped), lacks, "error")
-    else:  # it was to coast
-        yield Remark(message, moving.place(stopped), lacks, "note")
+        severity = "error"
+    yield Remark(message, moving.place(stopped), max(float(lack), 0.0), severity)
 
 
 @check("irregularity", kind=DYNAMICS, unit="", relation="at most")

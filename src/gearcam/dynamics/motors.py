@@ -163,11 +163,7 @@ class TableMotor(Motor):
     def _cells(self) -> tuple[list[float], list[tuple[float, ...]], Any]:
         from scipy.interpolate import PchipInterpolator
 
-        if len(self.speeds) == 2:
-            (a, b), (low, high) = self.sizes, self.speeds
-            powers = np.array([[0.0], [0.0], [(b - a) / (high - low)], [a]])
-        else:
-            powers = np.asarray(PchipInterpolator(self.speeds, self.sizes).c)
+        powers = np.asarray(PchipInterpolator(self.speeds, self.sizes).c)
         return [*self.speeds[1:-1]], [tuple(one) for one in powers.T.tolist()], powers
 
     def torque(self, phi: Any, omega: Any) -> Any:  # noqa: ARG002

@@ -47,7 +47,8 @@ _LARGEST: Final = 1e3
 """Largest one, where the load drives."""
 
 _SAME: Final = 1e-6
-"""Difference of speeds, over them, up to which a turn is found; width of what stops in a bracket."""
+"""Difference of speeds, over them, up to which a turn is found; also the width of a bracket, over
+the first one, up to which all below a place stops."""
 
 _ROUGH: Final = 1e-6
 """Tolerance of the motion with which the speed at an even torque is bracketed."""
@@ -211,10 +212,8 @@ def even_torque(run: RigidRun, mean: float) -> RigidMotion:
     near = coarse.speed(mean, 1.0 - _DOWN)
     if coarse.off(near) <= _CLOSE * mean:
         fine = _EvenTorque(run=run, mean=mean, torque=torque, exact=_EXACT)
-        omega = fine.speed(near, 10.0 * _COARSE)
-        if fine.off(omega) <= _SAME * mean:
-            found = fine.repeated(omega)
-            assert found is not None
+        found = fine.repeated(fine.speed(near, 10.0 * _COARSE))
+        if found is not None and found.mean_speed - mean <= _SAME * mean:
             return found
     what = "the machine stops within a turn at this mean speed"
     raise InfeasibleError(what, where="drive.speed_rpm", nearest="a flywheel, or more speed")
@@ -339,27 +338,30 @@ def flywheel(
 
     Notes
     -----
-    The first guess is (5.39), ``J = J0*(delta0/wanted)``; the irregularity falls as the flywheel
-    grows.
+    The first guess is (5.39), ``J = J0*(delta0/wanted)``. The irregularity falls as the flywheel
+    grows: of all machines that were tried, also where the inertia balances the load.
     """
 
     @cache
-    def over(size: float) -> float:
+    def moved(size: float) -> RigidMotion | None:
         try:
-            return motion_with(size).irregularity - wanted
-        except InfeasibleError:  # it stops: none is more irregular
-            return _STOPS - wanted
+            return motion_with(size)
+        except InfeasibleError:
+            return None
 
-    low, high = 0.0, usual
-    if over(low) >= _STOPS - wanted:
-        while over(high) >= _STOPS - wanted:
+    def over(size: float) -> float:
+        motion = moved(size)  # if it stops: none is more irregular
+        return (_STOPS if motion is None else motion.irregularity) - wanted
+
+    low, high, without = 0.0, usual, moved(0.0)
+    if without is None:
+        while moved(high) is None:
             low, high = high, 4.0 * high
             if high > _HEAVIEST * usual:
                 motion_with(0.0)  # refuses it
+    elif over(0.0) <= 0.0:
+        return 0.0, without
     else:
-        without = motion_with(0.0)
-        if without.irregularity <= wanted:
-            return 0.0, without
         inertia = without.machine.inertia(without.rows(without.knots))
         high = float(np.mean(inertia)) * (without.irregularity / wanted)
     while over(high) > 0.0:

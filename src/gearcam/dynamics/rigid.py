@@ -29,14 +29,14 @@ MOVES, STANDS = "moves", "stands"
 _REST: Final = 1e-12
 """Kinetic energy, over that at a usual speed, below which the driver stands still."""
 
+_BEGUN: Final = 1e-9
+"""The same, up to which a motion from rest follows its series."""
+
 _STEEP: Final = 5e3
 """Fall of a disturbance in a turn, as an exponent, from which explicit steps cost more."""
 
 _PROBES: Final = 65
 """Places at which it is looked for."""
-
-_BEGUN: Final = 1e-9
-"""The same, up to which a motion from rest follows its series."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

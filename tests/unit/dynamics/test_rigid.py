@@ -415,7 +415,8 @@ def test_the_moment_of_inertia_has_its_exact_ends():
 )
 def test_motors_have_the_torques_of_their_tables_in_n_m(spec, phi, omega, torque):
     # inside, torques are N mm and those of springs N mm/rad; rows of speeds are rpm
-    assert motor_of(spec).torque(phi, omega) == pytest.approx(torque, rel=1e-12)
+    motor: Any = motor_of(spec)
+    assert motor.torque(phi, omega) == pytest.approx(torque, rel=1e-12)
 
 
 def test_the_slope_of_the_inertia_of_a_pair_is_its_derivative():
