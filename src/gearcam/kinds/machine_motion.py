@@ -411,20 +411,23 @@ class MachineRun(ShortRepr):
         jump = float(np.diff(loads)[0])
         return jump if abs(jump) > 1e3 * _NARROW * np.abs(loads).max() else 0.0
 
-    @cached_property
-    def _driven(self) -> list[float]:
-        """Least and largest torque of the motor, N m, and largest power, W, also between rows."""
-        motion = self.motion
-        x = np.union1d(self.places, motion.places)
+    def largest(self, functions: Callable[[Array], Array]) -> list[float]:
+        """Return the largest value of each of some functions, also between rows.
 
-        def sought(phi: Array) -> Array:
-            driving = motion.torques(phi)[0]
-            return np.stack([-driving, driving, driving * motion.speed(phi)])
+        Parameters
+        ----------
+        functions : callable
+            ``functions(phi) -> (m, n) array`` at rising angles of the driver (n,), rad.
+        """
+        x, width = np.union1d(self.places, self.motion.places), _NARROW * self.machine.period
+        samples = functions(x)
+        which, _, values = summits(functions, samples, *neighbours(x), width)
+        return [float(values[which == number].max()) for number in range(len(samples))]
 
-        width = _NARROW * self.machine.period
-        which, _, values = summits(sought, sought(x), *neighbours(x), width)
-        least, *largest = (float(values[which == number].max()) for number in range(3))
-        return [-least, *largest]
+    def _driven(self, phi: Array) -> Array:
+        """Return the torque of the motor with both signs, N m, and its power, W, (3, n)."""
+        driving = self.motion.torques(phi)[0]
+        return np.stack([-driving, driving, driving * self.motion.speed(phi)])
 
     def findings(self) -> tuple[Finding, ...]:
         """Return the findings of the motion."""
@@ -448,7 +451,7 @@ class MachineRun(ShortRepr):
         motion, spec = self.motion, self.spec
         steady = spec.run == REGIME
         works = dict(zip(("motor", "load", "lost"), motion.works, strict=True))
-        least, largest, power = self._driven
+        below, above, power = self.largest(self._driven)
         worked = f"{formatted(works['motor'], 5)} J in, {formatted(works['load'], 5)} J on loads"
         if works["lost"]:
             worked += f", {formatted(works['lost'], 4)} J lost"
@@ -486,7 +489,7 @@ class MachineRun(ShortRepr):
                 unit="kg m2",
                 shown=True,
             ),
-            "torque_motor_nm": Fact(extent(least, largest), "torque of the motor", shown=True),
+            "torque_motor_nm": Fact(extent(-below, above), "torque of the motor", shown=True),
             "power_w": {
                 "mean": Fact(works["motor"] / motion.lasts, "mean power", unit="W", shown=True),
                 "peak": Fact(power, "largest power", unit="W", shown=True),

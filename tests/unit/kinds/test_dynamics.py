@@ -11,6 +11,9 @@ import pytest
 
 import gearcam as gc
 from gearcam.base.errors import DesignError, InfeasibleError
+from gearcam.base.findings import run_checks
+from gearcam.dynamics.checks import VibratingTeeth
+from gearcam.dynamics.settings import VIBRATION
 
 RPM = math.pi / 30.0
 
@@ -388,6 +391,22 @@ def test_the_largest_power_is_that_between_rows():
     most = 0.25 * 200.0 * 120.0 * RPM
     assert found.facts["dynamics.power_w.peak"] == pytest.approx(most, rel=1e-9)
     assert found.columns["power_w"].max() < 0.99 * most
+    # and of a load that is narrower than a step
+    load = [{"on": "wheel2", "formula": "20 + 40*exp(5000*(cos(phi1 - 2) - 1))"}]
+    changes = {"dynamics.inertia_kg_m2": 0.1, "dynamics.steps": 12, "drive.speed_rpm": 100}
+    facts = study("circular", {**changes, "load": load}).facts
+    assert facts["dynamics.torque_motor_nm.max"] == pytest.approx(60.0 * 14.0 / 35.0, rel=1e-9)
+    assert facts["dynamics.torque_motor_nm.min"] == pytest.approx(20.0 * 14.0 / 35.0, rel=1e-9)
+
+
+def test_a_resonance_is_told_with_the_speed_that_makes_it():
+    places, ratio = np.array([0.0, 1.0, 2.0]), np.array([0.4, 0.48, 1.04])
+    teeth = VibratingTeeth(lost=[], phi1=places, ratio=ratio, place=str)
+    found = [one.message for one in run_checks(VIBRATION, teeth, {})]
+    assert [one.split("exactly so at ")[1].split(" times")[0] for one in found] == [
+        "0.9615",
+        "1.042",
+    ]
 
 
 @pytest.mark.parametrize(("formula", "jump"), [("40*cos(phi1/2)", -80), ("40*cos(phi1)", 0)])
