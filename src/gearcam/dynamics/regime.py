@@ -205,13 +205,18 @@ def even_torque(run: RigidRun, mean: float) -> RigidMotion:
     -----
     From a given speed the energy gained in a turn rises with the torque, and the mean speed of the
     turn that gains none rises with the given speed: both roots are bracketed, above what stops.
+    Loads that do not depend on the speed have one torque for all speeds.
     """
-    even = RigidMotion(machine=run.machine, motor=None, knots=run.machine.knots, even=mean)
-    torque = (even.works[1] + even.works[2]) / run.machine.period
-    coarse = _EvenTorque(run=replace(run, rtol=_ROUGH), mean=mean, torque=torque, exact=_COARSE)
+    machine = run.machine
+    even = RigidMotion(machine=machine, motor=None, knots=machine.knots, even=mean)
+    torque = (even.works[1] + even.works[2]) / machine.period
+    row = machine.rows.at(machine.rows.edges)
+    loads = [machine.load(row, share * mean) for share in (1.0, 2.0)]
+    fixed = not even.works[2] and np.array_equal(*loads)
+    coarse = _EvenTorque(replace(run, rtol=_ROUGH), mean, torque, fixed, _COARSE)
     near = coarse.speed(mean, 1.0 - _DOWN)
     if coarse.off(near) <= _CLOSE * mean:
-        fine = _EvenTorque(run=run, mean=mean, torque=torque, exact=_EXACT)
+        fine = _EvenTorque(run, mean, torque, fixed, _EXACT)
         found = fine.repeated(fine.speed(near, 10.0 * _COARSE))
         if found is not None and found.mean_speed - mean <= _SAME * mean:
             return found
@@ -219,7 +224,7 @@ def even_torque(run: RigidRun, mean: float) -> RigidMotion:
     raise InfeasibleError(what, where="drive.speed_rpm", nearest="a flywheel, or more speed")
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class _EvenTorque:
     """Turns that repeat under an even torque, about a mean speed.
 
@@ -230,7 +235,9 @@ class _EvenTorque:
     mean : float, rad/s
         The mean speed.
     torque : float, N m
-        About that torque.
+        That torque, or about that.
+    fixed : bool
+        Whether it is that.
     exact : float
         Relative width to which roots are narrowed.
     """
@@ -238,6 +245,7 @@ class _EvenTorque:
     run: RigidRun
     mean: float
     torque: float
+    fixed: bool
     exact: float
 
     def repeated(self, omega: float) -> RigidMotion | None:
@@ -248,18 +256,20 @@ class _EvenTorque:
         low = float(self.run.machine.knots[0])
         usual, torque = self.run.energy(low, omega), self.torque
 
+        @cache
         def turn(size: float) -> RigidMotion:
             return replace(self.run, motor=ConstantMotor(size)).from_speed(omega)
 
-        @cache
         def gained(size: float) -> float:
             motion = turn(size)
             return motion.gained if motion.stopped is None else -math.inf
 
         first = gained(torque)
-        if abs(first) <= 1e-12 * usual:  # nothing depends on the speed
-            return turn(torque)
+        if self.fixed:
+            return None if math.isinf(first) else turn(torque)
         step = max(min(abs(first), usual), _COARSE * usual) / self.run.machine.period
+        if math.isinf(first):
+            step = max(step, abs(torque))
         ends = _beside(
             gained, torque, lambda x: 2.0 * x - torque - step, lambda x: 2.0 * x - torque + step
         )

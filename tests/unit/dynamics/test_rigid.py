@@ -343,12 +343,19 @@ def test_an_even_torque_may_drive_or_brake_a_load_that_depends_on_the_speed():
     assert motion.motor.size == pytest.approx(-30.0 + 0.5 * 20.0, rel=1e-2)
 
 
-@pytest.mark.slow
-def test_an_even_torque_that_would_stop_the_machine_is_refused():
+def test_an_even_torque_that_would_stop_the_machine_is_refused_after_few_turns(monkeypatch):
+    counted, own = [], RigidRun.from_speed
+
+    def from_speed(run, omega):
+        counted.append(omega)
+        return own(run, omega)
+
+    monkeypatch.setattr(RigidRun, "from_speed", from_speed)
     machine = reduced(constant(1.0), constant(0.0), lambda x: 50.0 * np.sin(x))
     run = RigidRun(machine=machine, motor=ConstantMotor(), scale=6.0)
     with pytest.raises(InfeasibleError, match="stops"):  # least possible: half of sqrt(200)
         even_torque(run, 6.9)
+    assert len(counted) < 50
     assert even_torque(run, 7.2).mean_speed == pytest.approx(7.2, rel=1e-9)
 
 
