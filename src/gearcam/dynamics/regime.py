@@ -21,6 +21,7 @@ from gearcam.base.numerals import formatted, shortened
 from gearcam.dynamics.machine import Machine
 from gearcam.dynamics.motors import ConstantMotor
 from gearcam.dynamics.rigid import RigidMotion, RigidRun
+from gearcam.numeric.roots import largest_fitting
 
 _COARSE: Final = 1e-4
 """Tolerance with which a root is bracketed."""
@@ -151,11 +152,9 @@ def _runaway() -> InfeasibleError:
 
 def _too_weak(coarse: RigidRun) -> InfeasibleError:
     """Return the error for a load without a regime, with the largest share of it that has one."""
-    share, step = 0.0, 1.0
-    for _ in range(_SHARES):
-        step *= 0.5
-        if _runs(coarse, replace(coarse.machine, share=share + step)):
-            share += step
+    share = largest_fitting(
+        lambda one: _runs(coarse, replace(coarse.machine, share=one)), 1.0, _SHARES
+    )
     what = "the motor does not turn this load: the machine stops within a turn, from any speed"
     nearest = coarse.machine.lighter.format(formatted(shortened(share, -1e-2 * share, 2)))
     if share <= 0.0:
