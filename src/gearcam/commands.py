@@ -112,10 +112,11 @@ def study_command(name: str) -> Command:
         number = "+" if study.many else None
         parser.add_argument("designs", nargs=number, metavar="FILE", help="design file (TOML)")
         add_output(parser)
-        taken: set[str] = set()
         for kind in kinds:
             kind.titles_with([study.table])  # it may be of another package
-            _add_settings(kind.studies[name], kind, parser, taken)
+        told, taken = _told(study.table, kinds), set[str]()
+        for kind in kinds:
+            _add_settings(kind.studies[name], kind, parser, told, taken)
 
     def run(options: Options) -> int:
         settings = dict(options)
@@ -132,18 +133,37 @@ def study_command(name: str) -> Command:
     return Command(study.name, study.doc, run, arguments)
 
 
+def _told(table: str, kinds: Sequence[Kind]) -> dict[str, str]:
+    """Return what each key of a table means, and of which kinds where not of all alike."""
+    meant: dict[str, dict[str, list[str]]] = {}
+    for kind in kinds:
+        for key, entry in kind.table(table).entries.items():
+            meant.setdefault(key, {}).setdefault(entry.param.doc, []).append(kind.name)
+    return {
+        key: "; ".join(
+            doc if len(names) == len(kinds) else f"{' or '.join(names)}: {doc}"
+            for doc, names in docs.items()
+        )
+        for key, docs in meant.items()
+    }
+
+
 def _add_settings(
-    study: Study, kind: Kind, parser: argparse.ArgumentParser, taken: set[str]
+    study: Study,
+    kind: Kind,
+    parser: argparse.ArgumentParser,
+    told: Mapping[str, str],
+    taken: set[str],
 ) -> None:
     """Add an option for each key of a study's settings, which it overrides, to a `parser`.
 
-    Those that are `taken` it has already, of another kind.
+    Each is `told` as it is; those that are `taken` it has already, of another kind.
     """
     for key, entry in kind.table(study.table).entries.items():
         if key in taken:
             continue
         taken.add(key)
-        words: dict[str, Any] = {"help": entry.param.doc}
+        words: dict[str, Any] = {"help": told[key]}
         if key == study.argument:
             parser.add_argument(key, metavar=study.metavar or key.upper(), **words)
             continue

@@ -75,5 +75,6 @@ def _torque(d: Draw, kind: str, torque: float, rpm: float) -> dict[str, Any]:
             }
         case "table":
             torques = [start, short(start * d.even(0.8, 1.2)), 0.0]
-            return {"torque_nm": torques, "rpm": [0, short(0.8 * rpm), short(1.3 * rpm)]}
+            first = short(rpm * d.pick((0, 0, 0.3)))
+            return {"torque_nm": torques, "rpm": [first, short(0.8 * rpm), short(1.3 * rpm)]}
     return {}

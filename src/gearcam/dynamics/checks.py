@@ -10,6 +10,7 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.findings import Remark, check
+from gearcam.base.numerals import formatted
 from gearcam.base.quantities import NUMBER, Param
 from gearcam.dynamics.motion import MachineMotion
 from gearcam.dynamics.settings import DYNAMICS, VIBRATION
@@ -18,6 +19,9 @@ from gearcam.numeric.arrays import Array
 
 _BALANCED = 100.0
 """Largest residue of the energy balance, in tolerances."""
+
+_DRIVES = 1e-6
+"""Work of loads, over that of the motor, that is rounding."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -34,12 +38,15 @@ class MovingMachine(ShortRepr):
         Of the integration.
     place : callable
         ``place(phi)`` returns an angle of the driver in words.
+    jump : float, N m
+        By how much a formula of a load jumps at the driver where the turn ends.
     """
 
     motion: MachineMotion
     wanted: float | None
     tolerance: float
     place: Callable[[float], str]
+    jump: float = 0.0
 
 
 @check("stalls", kind=DYNAMICS, severity=("error", "note"), unit="N m")
@@ -54,14 +61,11 @@ def stalls(moving: MovingMachine, limit: float) -> Iterator[Remark]:  # noqa: AR
     row = motion.machine.rows(stopped)
     driving = 0.0 if motion.motor is None else float(motion.motor.torque(stopped, 0.0))
     lack = motion.machine.resistance(row, 0.0, driving) - driving
-    message = "The machine stops here."
-    if motion.motor is not None and driving:
+    message, severity = "The machine stops here.", "note"
+    if driving:  # it was not to coast
         message = "The motor does not turn the load here, and the machine stops."
-    lacks = max(float(lack), 0.0)
-    if driving:
-        yield Remark(message, moving.place(stopped), lacks, "error")
-    else:  # it was to coast
-        yield Remark(message, moving.place(stopped), lacks, "note")
+        severity = "error"
+    yield Remark(message, moving.place(stopped), max(float(lack), 0.0), severity)
 
 
 @check("irregularity", kind=DYNAMICS, unit="", relation="at most")
@@ -77,6 +81,30 @@ def irregularity(moving: MovingMachine, limit: float) -> Iterator[Remark]:  # no
             'flywheel_kg_m2 = "solve" finds the least.'
         )
         yield Remark(message, "", found, limit=wanted)
+
+
+@check("load-drives", kind=DYNAMICS, severity="note", unit="J")
+def load_drives(moving: MovingMachine, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Note that the loads drive the machine.
+
+    Looks at: the work on the loads, which is then negative, over a turn or the whole run.
+    """
+    motion = moving.motion
+    fastest = motion.speeds[1][1]
+    work, energy = motion.works[1], 0.5 * motion.machine.inertia_ends[1][1] * fastest**2
+    if work < -max(moving.tolerance * energy, _DRIVES * abs(motion.works[0])):
+        yield Remark("The loads drive the machine: is their sign right?", "", work)
+
+
+@check("load-jumps", kind=DYNAMICS, severity="note", unit="N m")
+def load_jumps(moving: MovingMachine, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Note that the formula of a load does not repeat with the turn, or the turns, of the motion.
+
+    Looks at: the load at the driver before the first angle and behind it.
+    """
+    if moving.jump:
+        message = "A formula of a load does not repeat: it jumps here, where it begins anew."
+        yield Remark(message, moving.place(float(moving.motion.machine.knots[0])), moving.jump)
 
 
 @check("energy", kind=DYNAMICS, relation="at most")
@@ -154,9 +182,10 @@ def resonance(teeth: VibratingTeeth, limit: float) -> Iterator[Remark]:
         near = np.abs(teeth.ratio / whole - 1.0)
         worst = int(near.argmin())
         if near[worst] <= limit:
+            exactly = formatted(whole / float(teeth.ratio[worst]), 4)
             yield Remark(
-                f"Teeth come at {words} of their mesh here: another speed, inertia or stiffness "
-                "avoids the resonance.",
+                f"Teeth come at {words} of their mesh here, exactly so at {exactly} times this "
+                "speed: another speed, inertia or stiffness avoids the resonance.",
                 teeth.place(float(teeth.phi1[worst])),
                 float(teeth.ratio[worst]),
                 limit=whole,

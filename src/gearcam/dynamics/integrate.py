@@ -353,6 +353,8 @@ class _Run:
         many switches does not fall with the tolerance.
         """
         low, high = float(solver.t_old), float(solver.t)
+        if place <= low:  # it began there
+            return low, solver.y_old, switch.to
         step = type(solver)(
             rate, low, solver.y_old, place, rtol=1.0, atol=np.inf, first_step=place - low
         )

@@ -31,6 +31,8 @@ from gearcam.dynamics.tabled import Tabled
 from gearcam.numeric.arrays import Array, snapped
 from gearcam.numeric.piecewise import extremes
 
+TURN: Final = 2.0 * math.pi
+
 _AT_KNOT: Final = 1e-9
 """Distance from a knot, rad, within which a place is called by it."""
 
@@ -101,6 +103,11 @@ class Machine(ABC, ShortRepr):
         """Angle from its first to its last knot, rad: a turn, several turns, or a travel."""
         return float(self.knots[-1] - self.knots[0])
 
+    @property
+    def turns(self) -> int:
+        """Turns of the driver in its period; 1 of a travel."""
+        return max(1, round(self.period / TURN)) if self.closed else 1
+
     @cached_property
     def inertia_ends(self) -> tuple[tuple[float, float], tuple[float, float]]:
         """The least and the largest moment of inertia, each as (angle, kg m2)."""
@@ -114,20 +121,20 @@ class Machine(ABC, ShortRepr):
         low, high = int(values.argmin()), int(values.argmax())
         return (float(places[low]), float(values[low])), (float(places[high]), float(values[high]))
 
-    def knots_over(self, turns: float, low: float | None = None) -> Array:
-        """Return the knots of some turns, rad; of an open machine those of its travel.
+    def knots_over(self, periods: float, low: float | None = None) -> Array:
+        """Return the knots of some periods, rad; of an open machine those of its travel.
 
         Parameters
         ----------
-        turns : float
-            Number of turns.
+        periods : float
+            Number of periods.
         low : float, optional
-            Where they begin, in the first turn; at the first knot by default.
+            Where they begin, in the first one; at the first knot by default.
         """
         own, every, high = self.knots, self.knots, self.knots[-1]
         if self.closed:
-            every = np.unique(np.add.outer(self.period * np.arange(math.ceil(turns)), own))
-            high = own[0] + self.period * turns
+            every = np.unique(np.add.outer(self.period * np.arange(math.ceil(periods)), own))
+            high = own[0] + self.period * periods
         first = own[0] if low is None else low
         return np.concatenate([[first], every[(every > first) & (every < high)], [high]])
 

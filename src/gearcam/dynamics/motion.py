@@ -33,6 +33,11 @@ class MachineMotion(Protocol):
         """First and last angle, rad."""
         ...
 
+    @property
+    def places(self) -> Array:
+        """Angles, rad, between which nothing of the motion is missed."""
+        ...
+
     @cached_property
     def speeds(self) -> tuple[tuple[float, float], tuple[float, float]]:
         """Least and largest speed, each as (angle, rad/s)."""

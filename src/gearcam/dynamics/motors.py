@@ -27,8 +27,8 @@ class Motor(ABC, ShortRepr):
 
     settles: ClassVar[bool] = False
     """Whether its torque falls with the speed, so that a machine has a regime of its own."""
-    highest: float = math.inf
-    """Speed up to which its torque is known, rad/s."""
+    known: tuple[float, float] = (0.0, math.inf)
+    """Speeds between which its torque is known, rad/s."""
     scale: float = 0.0
     """A usual speed of the driver, rad/s; 0 if it has none."""
     bends: tuple[float, ...] = ()
@@ -130,7 +130,11 @@ class AsynchronousMotor(Motor):
 
 @dataclass(frozen=True)
 class TableMotor(Motor):
-    """Torques of some `sizes`, N m, at `speeds`, rad/s: a monotone cubic (Fritsch, Butland)."""
+    """Torques of some `sizes`, N m, at `speeds`, rad/s: a monotone cubic (Fritsch, Butland).
+
+    Beyond its speeds, where a regime is only looked for: that of the first below them, and above
+    them the chord of the last two goes on.
+    """
 
     speeds: tuple[float, ...]
     sizes: tuple[float, ...]
@@ -141,9 +145,9 @@ class TableMotor(Motor):
         return self.sizes[-1] < min(self.sizes[:-1])
 
     @property
-    def highest(self) -> float:  # type: ignore[override]
-        """Its highest speed."""
-        return self.speeds[-1]
+    def known(self) -> tuple[float, float]:  # type: ignore[override]
+        """Its first and its last speed."""
+        return self.speeds[0], self.speeds[-1]
 
     @property
     def scale(self) -> float:  # type: ignore[override]
@@ -159,29 +163,27 @@ class TableMotor(Motor):
     def _cells(self) -> tuple[list[float], list[tuple[float, ...]], Any]:
         from scipy.interpolate import PchipInterpolator
 
-        if len(self.speeds) == 2:
-            (a, b), (low, high) = self.sizes, self.speeds
-            powers = np.array([[0.0], [0.0], [(b - a) / (high - low)], [a]])
-        else:
-            powers = np.asarray(PchipInterpolator(self.speeds, self.sizes).c)
+        powers = np.asarray(PchipInterpolator(self.speeds, self.sizes).c)
         return [*self.speeds[1:-1]], [tuple(one) for one in powers.T.tolist()], powers
 
     def torque(self, phi: Any, omega: Any) -> Any:  # noqa: ARG002
-        """Return its torque; beyond its speeds along the last chord (see `Motor.torque`)."""
+        """Return its torque (see `Motor.torque`)."""
         inner, cells, powers = self._cells
+        lowest, highest = self.known
         if isinstance(omega, np.ndarray):
-            within = np.minimum(omega, self.highest)
+            within = np.clip(omega, lowest, highest)
             cell = np.searchsorted(inner, within, side="right")
             a, b, c, d = powers[:, cell]
             low = np.asarray(self.speeds)[cell]
         else:
-            within = min(omega, self.highest)
+            within = min(max(omega, lowest), highest)
             number = bisect_right(inner, within)
             a, b, c, d = cells[number]
             low = self.speeds[number]
         t = within - low
         chord = (self.sizes[-1] - self.sizes[-2]) / (self.speeds[-1] - self.speeds[-2])
-        return ((a * t + b) * t + c) * t + d + chord * (omega - within)
+        beyond = 0.5 * (omega - highest + abs(omega - highest))
+        return ((a * t + b) * t + c) * t + d + chord * beyond
 
 
 def motor_of(spec: MotorSpec) -> Motor | None:

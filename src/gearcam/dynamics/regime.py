@@ -8,6 +8,7 @@ is given, and the torque is that which keeps it.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache, partial
@@ -17,8 +18,10 @@ import numpy as np
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import formatted, shortened
+from gearcam.dynamics.machine import Machine
 from gearcam.dynamics.motors import ConstantMotor
 from gearcam.dynamics.rigid import RigidMotion, RigidRun
+from gearcam.numeric.roots import largest_fitting
 
 _COARSE: Final = 1e-4
 """Tolerance with which a root is bracketed."""
@@ -35,6 +38,9 @@ _DOWN: Final = 0.85
 _UP: Final = 1.25
 """The same where the load drives."""
 
+_FALLEN: Final = 0.01
+"""Error allowed of the speed after a turn, over it."""
+
 _LEAST: Final = 0.02
 """Least speed at which a turn is tried, over the usual one."""
 
@@ -42,10 +48,14 @@ _LARGEST: Final = 1e3
 """Largest one, where the load drives."""
 
 _SAME: Final = 1e-6
-"""Difference of speeds, or energies, over them, up to which a turn is found."""
+"""Difference of speeds, over them, up to which a turn is found; also the width of a bracket, over
+the first one, up to which all below a place stops."""
 
-_CLOSE: Final = 0.05
-"""The same with the coarse tolerance."""
+_ROUGH: Final = 1e-6
+"""Tolerance of the motion with which the speed at an even torque is bracketed."""
+
+_CLOSE: Final = 5e-3
+"""Error of a mean speed found with it, over it: the least speed depends much on the energy."""
 
 _STOPS: Final = 2.0
 """Irregularity of a machine whose least speed is 0."""
@@ -88,13 +98,18 @@ def _gain(run: RigidRun, omega: float) -> float:
 
 
 def _bracket(gain: Callable[[float], float], run: RigidRun) -> tuple[float, float] | None:
-    """Return speeds at the first angle between which the regime is; None if there is none."""
+    """Return speeds at the first angle between which the regime is; None if there is none.
+
+    Of two motions the faster one stays the faster: no speed repeats between one and that to which
+    it falls in a turn, and if the machine stops from one, it stops from all below.
+    """
     high, scale, bends = run.scale, run.scale, run.motor.bends
     while gain(high) > 0.0:
         high = min([_UP * high, *(one for one in bends if one > high)])
         if high > _LARGEST * scale:
             return None
     while True:
+        high = min(high, (1.0 + _FALLEN) * (high + gain(high)))
         low = max([_DOWN * high, *(one for one in bends if one < high)])
         if low < _LEAST * scale:
             return None
@@ -137,13 +152,9 @@ def _runaway() -> InfeasibleError:
 
 def _too_weak(coarse: RigidRun) -> InfeasibleError:
     """Return the error for a load without a regime, with the largest share of it that has one."""
-    share, step = 0.0, 1.0
-    for _ in range(_SHARES):
-        step *= 0.5
-        machine = replace(coarse.machine, share=share + step)
-        lighter = replace(coarse, machine=machine)
-        if _bracket(partial(_gain, lighter), lighter) is not None:
-            share += step
+    share = largest_fitting(
+        lambda one: _runs(coarse, replace(coarse.machine, share=one)), 1.0, _SHARES
+    )
     what = "the motor does not turn this load: the machine stops within a turn, from any speed"
     nearest = coarse.machine.lighter.format(formatted(shortened(share, -1e-2 * share, 2)))
     if share <= 0.0:
@@ -157,13 +168,17 @@ def _too_weak(coarse: RigidRun) -> InfeasibleError:
 def _carrying(coarse: RigidRun) -> float:
     """Return a flywheel, kg m2, that carries a machine through its load; 0 if none does."""
     (_, low), (_, high) = coarse.machine.inertia_ends
-    size = 0.5 * (low + high)
-    for _ in range(_TRIED):
-        size = shortened(4.0 * size, 0.1 * size, 2)
-        heavier = replace(coarse, machine=coarse.machine.with_flywheel(size))
-        if _bracket(partial(_gain, heavier), heavier) is not None:
-            return size
-    return 0.0
+    sizes = 0.5 * (low + high) * 4.0 ** np.arange(1, _TRIED + 1)
+    tried = [shortened(one, 0.025 * one, 2) for one in sizes.tolist()]
+    if not _runs(coarse, coarse.machine.with_flywheel(tried[-1])):
+        return 0.0
+    return next(one for one in tried if _runs(coarse, coarse.machine.with_flywheel(one)))
+
+
+def _runs(coarse: RigidRun, machine: Machine) -> bool:
+    """Return whether a machine has a regime with the motor of a run."""
+    run = replace(coarse, machine=machine)
+    return _bracket(cache(partial(_gain, run)), run) is not None
 
 
 def even_torque(run: RigidRun, mean: float) -> RigidMotion:
@@ -188,23 +203,27 @@ def even_torque(run: RigidRun, mean: float) -> RigidMotion:
     Notes
     -----
     From a given speed the energy gained in a turn rises with the torque, and the mean speed of the
-    turn that gains none rises with the given speed: both roots are bracketed. A motion that stops
-    gains less than nothing, and its mean speed counts as 0.
+    turn that gains none rises with the given speed: both roots are bracketed, above what stops.
+    Loads that do not depend on the speed have one torque for all speeds.
     """
-    even = RigidMotion(machine=run.machine, motor=None, knots=run.machine.knots, even=mean)
-    torque = (even.works[1] + even.works[2]) / run.machine.period
-    coarse = _EvenTorque(run=replace(run, rtol=_COARSE), mean=mean, torque=torque, exact=_COARSE)
+    machine = run.machine
+    even = RigidMotion(machine=machine, motor=None, knots=machine.knots, even=mean)
+    torque = (even.works[1] + even.works[2]) / machine.period
+    row = machine.rows.at(machine.rows.edges)
+    loads = [machine.load(row, share * mean) for share in (1.0, 2.0)]
+    fixed = not even.works[2] and np.array_equal(*loads)
+    coarse = _EvenTorque(replace(run, rtol=_ROUGH), mean, torque, fixed, _COARSE)
     near = coarse.speed(mean, 1.0 - _DOWN)
-    if abs(coarse.off(near)) <= _CLOSE * mean:
-        fine = _EvenTorque(run=run, mean=mean, torque=torque, exact=_EXACT)
-        omega = fine.speed(near, 10.0 * _COARSE)
-        if abs(fine.off(omega)) <= _SAME * mean:
-            return fine.repeated(omega)
+    if coarse.off(near) <= _CLOSE * mean:
+        fine = _EvenTorque(run, mean, torque, fixed, _EXACT)
+        found = fine.repeated(fine.speed(near, 10.0 * _COARSE))
+        if found is not None and found.mean_speed - mean <= _SAME * mean:
+            return found
     what = "the machine stops within a turn at this mean speed"
     raise InfeasibleError(what, where="drive.speed_rpm", nearest="a flywheel, or more speed")
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class _EvenTorque:
     """Turns that repeat under an even torque, about a mean speed.
 
@@ -215,7 +234,9 @@ class _EvenTorque:
     mean : float, rad/s
         The mean speed.
     torque : float, N m
-        About that torque.
+        That torque, or about that.
+    fixed : bool
+        Whether it is that.
     exact : float
         Relative width to which roots are narrowed.
     """
@@ -223,42 +244,63 @@ class _EvenTorque:
     run: RigidRun
     mean: float
     torque: float
+    fixed: bool
     exact: float
 
-    def repeated(self, omega: float) -> RigidMotion:
-        """Return the turn that gains no energy from a speed `omega`, rad/s, at the first angle."""
+    def repeated(self, omega: float) -> RigidMotion | None:
+        """Return the turn that gains no energy from a speed `omega`, rad/s, at the first angle.
+
+        None if a torque that does not stop within the turn gains some.
+        """
         low = float(self.run.machine.knots[0])
         usual, torque = self.run.energy(low, omega), self.torque
 
+        @cache
         def turn(size: float) -> RigidMotion:
             return replace(self.run, motor=ConstantMotor(size)).from_speed(omega)
 
         def gained(size: float) -> float:
-            return turn(size).gained
+            motion = turn(size)
+            return motion.gained if motion.stopped is None else -math.inf
 
         first = gained(torque)
-        if abs(first) <= 1e-12 * usual:  # nothing depends on the speed
-            return turn(torque)
-        step = max(abs(first), _COARSE * usual) / self.run.machine.period
+        if self.fixed:
+            return None if math.isinf(first) else turn(torque)
+        step = max(min(abs(first), usual), _COARSE * usual) / self.run.machine.period
+        if math.isinf(first):
+            step = max(step, abs(torque))
         ends = _beside(
             gained, torque, lambda x: 2.0 * x - torque - step, lambda x: 2.0 * x - torque + step
         )
-        return turn(_root(gained, *ends, self.exact))
+        found, steady = _rising_root(gained, *ends, self.exact)
+        return turn(found) if steady else None
 
     def off(self, omega: float) -> float:
-        """Return by how much its mean speed is above the one that is wanted.
-
-        That of a machine that stops, or would with a little less torque, is 0.
-        """
+        """Return by how much its mean speed is above the one that is wanted; -inf if it stops."""
         motion = self.repeated(omega)
-        usual = self.run.energy(float(self.run.machine.knots[0]), omega)
-        steady = abs(motion.gained) <= max(_SAME, 100.0 * self.exact) * usual
-        return (motion.mean_speed if motion.stopped is None and steady else 0.0) - self.mean
+        return -math.inf if motion is None else motion.mean_speed - self.mean
 
     def speed(self, near: float, part: float) -> float:
-        """Return the speed at the first angle, rad/s, at which nothing is off."""
+        """Return the speed at the first angle, rad/s, at which nothing is off, or the least one."""
         off, down = cache(self.off), 1.0 - part
-        return _root(off, *_beside(off, near, lambda x: down * x, lambda x: x / down), self.exact)
+        ends = _beside(off, near, lambda x: down * x, lambda x: x / down)
+        return _rising_root(off, *ends, self.exact)[0]
+
+
+def _rising_root(
+    rising: Callable[[float], float], low: float, high: float, exact: float
+) -> tuple[float, bool]:
+    """Return the root of a function that is -inf up to some place and rises from there.
+
+    If it is above 0 there, the place and False.
+    """
+    least = max(exact, _SAME) * (high - low)
+    while math.isinf(rising(low)):
+        if high - low <= least:
+            return high, False
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if rising(middle) > 0.0 else (middle, high)
+    return _root(rising, low, high, exact), True
 
 
 def _beside(
@@ -305,27 +347,30 @@ def flywheel(
 
     Notes
     -----
-    The first guess is (5.39), ``J = J0*(delta0/wanted)``; the irregularity falls as the flywheel
-    grows.
+    The first guess is (5.39), ``J = J0*(delta0/wanted)``. The irregularity falls as the flywheel
+    grows: of all machines that were tried, also where the inertia balances the load.
     """
 
     @cache
-    def over(size: float) -> float:
+    def moved(size: float) -> RigidMotion | None:
         try:
-            return motion_with(size).irregularity - wanted
-        except InfeasibleError:  # it stops: none is more irregular
-            return _STOPS - wanted
+            return motion_with(size)
+        except InfeasibleError:
+            return None
 
-    low, high = 0.0, usual
-    if over(low) >= _STOPS - wanted:
-        while over(high) >= _STOPS - wanted:
+    def over(size: float) -> float:
+        motion = moved(size)  # if it stops: none is more irregular
+        return (_STOPS if motion is None else motion.irregularity) - wanted
+
+    low, high, without = 0.0, usual, moved(0.0)
+    if without is None:
+        while moved(high) is None:
             low, high = high, 4.0 * high
             if high > _HEAVIEST * usual:
                 motion_with(0.0)  # refuses it
+    elif over(0.0) <= 0.0:
+        return 0.0, without
     else:
-        without = motion_with(0.0)
-        if without.irregularity <= wanted:
-            return 0.0, without
         inertia = without.machine.inertia(without.rows(without.knots))
         high = float(np.mean(inertia)) * (without.irregularity / wanted)
     while over(high) > 0.0:

@@ -17,13 +17,11 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.dynamics.integrate import Integrator, Mode, Motion, MotionPiece, Switch
-from gearcam.dynamics.machine import Machine
+from gearcam.dynamics.machine import TURN, Machine
 from gearcam.dynamics.motors import Motor
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.gauss import gauss_cells
-from gearcam.numeric.piecewise import extremes
-
-TURN: Final = 2.0 * math.pi
+from gearcam.numeric.piecewise import extremes, places_between
 
 MOVES, STANDS = "moves", "stands"
 """Modes: the driver turns, or it has stopped."""
@@ -31,14 +29,14 @@ MOVES, STANDS = "moves", "stands"
 _REST: Final = 1e-12
 """Kinetic energy, over that at a usual speed, below which the driver stands still."""
 
+_BEGUN: Final = 1e-9
+"""The same, up to which a motion from rest follows its series."""
+
 _STEEP: Final = 5e3
 """Fall of a disturbance in a turn, as an exponent, from which explicit steps cost more."""
 
 _PROBES: Final = 65
 """Places at which it is looked for."""
-
-_BEGUN: Final = 1e-9
-"""The same, up to which a motion from rest follows its series."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -116,11 +114,17 @@ class RigidMotion(ShortRepr):
         """Angles between which a few points tell all, rad."""
         steps = [one.low for one in self.motion.pieces] if self.motion else []
         low, high = self.ends
-        turns = np.arange(math.ceil((high - low) / self.machine.period))
-        edges = np.add.outer(self.machine.period * turns, self.machine.rows.edges).ravel()
+        periods = np.arange(math.ceil((high - low) / self.machine.period))
+        edges = np.add.outer(self.machine.period * periods, self.machine.rows.edges).ravel()
         inside = edges[(edges > low) & (edges < high)]
         knots = self.knots[(self.knots > low) & (self.knots < high)]
         return np.unique(np.concatenate([[low], knots, steps, inside, [high]]))
+
+    @property
+    def places(self) -> Array:
+        """Angles, rad, between which nothing of the motion is missed."""
+        cells = self._cells
+        return np.unique(places_between(cells, cells=True)) if len(cells) > 1 else cells
 
     @cached_property
     def speeds(self) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -253,10 +257,10 @@ class RigidRun(ShortRepr):
     def _over(self, knots: Array, motion: Motion) -> RigidMotion:
         return RigidMotion(machine=self.machine, motor=self.motor, knots=knots, motion=motion)
 
-    def from_speed(self, omega: float, turns: float = 1.0) -> RigidMotion:
-        """Return the motion from the first angle, at a speed of `omega`, rad/s, over `turns`."""
+    def from_speed(self, omega: float, periods: float = 1.0) -> RigidMotion:
+        """Return the motion from the first angle, at a speed of `omega`, rad/s, over `periods`."""
         low = float(self.machine.knots[0])
-        knots = self.machine.knots_over(turns)
+        knots = self.machine.knots_over(periods)
         return self._over(knots, self._integrated(self.energy(low, omega), 0.0, knots))
 
     def speed_after_turn(self, omega: float) -> float:
@@ -268,13 +272,13 @@ class RigidRun(ShortRepr):
         inertia = self.machine.inertia(self.machine.rows(low))
         return math.sqrt(2.0 * float(motion.end[0]) / inertia)
 
-    def from_rest(self, turns: float = 1.0) -> RigidMotion:
-        """Return the motion from rest over a number of turns.
+    def from_rest(self, periods: float = 1.0) -> RigidMotion:
+        """Return the motion from rest over a number of periods.
 
         Parameters
         ----------
-        turns : float
-            The turns; of an open machine its travel.
+        periods : float
+            The periods; of an open machine its travel.
 
         Returns
         -------
@@ -294,7 +298,7 @@ class RigidRun(ShortRepr):
             phi = np.maximum(x - low, 0.0)
             return np.array([torque * phi, slow * np.sqrt(phi)])
 
-        knots = self.machine.knots_over(turns, low + angle)
+        knots = self.machine.knots_over(periods, low + angle)
         motion = self._integrated(torque * angle, slow * math.sqrt(angle), knots)
         pieces = [MotionPiece(low, low + angle, MOVES, series), *motion.pieces]
         return self._over(np.array([low, *knots[1:]]), replace(motion, pieces=pieces))

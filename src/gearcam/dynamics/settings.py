@@ -53,7 +53,8 @@ class DynamicsSpec(ShortRepr):
         default=360,
         ge=12,
         le=100_000,
-        doc="number of even steps of a turn in dynamics.csv; both sides of knots are added",
+        doc="number of even steps of a turn in dynamics.csv, 100 000 in all at most; both sides of "
+        "knots are added",
     )
     tolerance: float = param(
         default=1e-6,

@@ -20,8 +20,10 @@ from gearcam.dynamics.motors import ConstantMotor, motor_of
 from gearcam.dynamics.regime import even_torque, flywheel, regime
 from gearcam.dynamics.rigid import RigidMotion, RigidRun
 from gearcam.dynamics.settings import COAST, DYNAMICS, REGIME, START, TURNS
+from gearcam.numeric.narrowing import neighbours, summits
 from gearcam.numeric.piecewise import with_both_sides
-from gearcam.pictures.charts import Chart, Line, knot_marks
+from gearcam.numeric.roots import bracketed_root
+from gearcam.pictures.charts import Chart, Line, MarkedPlace, knot_marks
 from gearcam.pictures.scenes import PLACES
 
 if TYPE_CHECKING:
@@ -46,13 +48,19 @@ _NOTHING: Final = 1e-9
 """Moment of inertia over the largest that is 0."""
 
 _SAME: Final = 1e-9
-"""Difference of loads over the largest that is rounding."""
+"""Difference of loads, or of speeds, over the largest that is rounding."""
 
 _UNTIL_REST: Final = 100
 """Largest number of turns of a machine that coasts."""
 
 _ROWS: Final = 100_000
-"""Largest number of rows of the table."""
+"""Largest number of even steps of the table."""
+
+_NARROW: Final = 1e-9
+"""Width, over a period, to which an extreme is narrowed."""
+
+_RUN_UP: Final = 0.99
+"""Mean speed, over that of the regime, at which a machine has run up."""
 
 
 def demand(design: Any, speed: float | None, key: str) -> None:
@@ -165,8 +173,9 @@ def speed_powers(
         if np.abs(found - fits.polyval(shares, fit).T).max() <= _SAME * np.abs(found).max():
             break
     else:
-        what = f"it is no polynomial of the velocity, of degree {_HIGHEST} or less"
-        raise InfeasibleError(what, where="load", nearest="such as 200 + 3*v or 0.1*v**2")
+        what = f"a load is no polynomial of the speed, of degree {_HIGHEST} or less"
+        near = "such as 200 + 3*v or 0.1*v**2, of a pair 0.5*omega2"
+        raise InfeasibleError(what, where="load", nearest=near)
     speeds = speed * (1.0 - np.cos(np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1)))
     to_powers = np.linalg.inv(np.vander(speeds, increasing=True))
     # powers that the polynomial does not have are rounding
@@ -238,13 +247,15 @@ class MachineRun(ShortRepr):
         Raises
         ------
         InfeasibleError
-            If there is no regime, or the driver is faster than the motor's table.
+            If there is no regime, or the motor's table does not reach over the speeds.
         """
         motion = self._found[1]
         least, largest = motion.speeds[0][1], motion.speeds[1][1]
-        ends = getattr(motion.motor, "speeds", (0.0, math.inf))
-        for found, end, off in ((least, ends[0], -1.0), (largest, ends[-1], 1.0)):
-            if motion.stopped is None and off * (found - end) > 1e-9 * largest:
+        if self.spec.run == START or motion.stopped is not None:
+            least = 0.0
+        low, high = (0.0, math.inf) if motion.motor is None else motion.motor.known
+        for found, end, beyond in ((least, low, low - least), (largest, high, largest - high)):
+            if beyond > _SAME * max(largest, low):
                 what = "the motor's table does not reach over the speeds of the driver"
                 raise InfeasibleError(
                     what,
@@ -261,9 +272,9 @@ class MachineRun(ShortRepr):
         self._demand_turns()
         machine, spec = self.machine.with_flywheel(inertia), self.spec
         usual = _UNTIL_REST if spec.run == COAST else 3
-        turns = spec.turns or (usual if machine.closed else 1)
+        periods = (spec.turns or (usual if machine.closed else 1)) / machine.turns
         if self.motor is None:
-            knots = machine.knots_over(turns) if spec.run == TURNS else machine.knots
+            knots = machine.knots_over(periods) if spec.run == TURNS else machine.knots
             return RigidMotion(machine=machine, motor=None, knots=knots, even=self.speed or 0.0)
         (least_at, least), (_, largest) = machine.inertia_ends
         if least <= _NOTHING * largest:
@@ -272,19 +283,52 @@ class MachineRun(ShortRepr):
                 what = "nothing that has inertia moves here: the speed would be infinite"
             near = "a flywheel, or inertia of the driver"
             raise InfeasibleError(what, where=self.place(least_at), nearest=near)
-        run = RigidRun(
-            machine=machine,
-            motor=self.motor,
-            scale=self.motor.scale or self.speed or self._guessed(machine),
-            rtol=max(_FINER * spec.tolerance, _LEAST_TOLERANCE),
-        )
+        run = self._run(machine, self.motor)
         if spec.run == START:
-            return run.from_rest(turns)
+            return run.from_rest(periods)
         if spec.run in (TURNS, COAST):
-            return run.from_speed(self.speed or 0.0, turns)
+            return run.from_speed(self.speed or 0.0, periods)
         if self.motor.settles:
             return regime(run)
         return even_torque(run, self.speed or 0.0)
+
+    def _run(self, machine: Machine, motor: Motor) -> RigidRun:
+        return RigidRun(
+            machine=machine,
+            motor=motor,
+            scale=motor.scale or self.speed or self._guessed(machine),
+            rtol=max(_FINER * self.spec.tolerance, _LEAST_TOLERANCE),
+        )
+
+    @cached_property
+    def run_up(self) -> float | None:
+        """Time, s, after which a machine from rest has nearly the mean speed of its regime.
+
+        The mean of the last period; None of other runs, and if there is no regime or it is not
+        reached.
+        """
+        motion, motor = self.motion, self.motor
+        machine, (low, high) = motion.machine, motion.ends
+        starts = self.spec.run == START and machine.closed and motion.stopped is None
+        if not starts or motor is None or not motor.settles:
+            return None
+        try:
+            longest = regime(self._run(machine, motor)).lasts / _RUN_UP
+        except InfeasibleError:
+            return None
+
+        def slow(phi: Array) -> Array:
+            return motion.time(phi) - motion.time(phi - machine.period) - longest
+
+        # a start is slower than the regime at every angle, and faster after every period
+        ends = np.append(np.arange(low + machine.period, high, machine.period), high)
+        found = slow(ends)
+        if found[-1] > 0.0:
+            return None
+        at = int(np.argmax(found <= 0.0))
+        before = max(at - 1, 0)
+        place = bracketed_root(slow, ends[[before]], ends[[at]], _NARROW * machine.period)
+        return float(motion.time(place)[0])
 
     def _demand_turns(self) -> None:
         """Refuse a regime, or turns, of a machine that has a travel."""
@@ -310,9 +354,14 @@ class MachineRun(ShortRepr):
     def places(self) -> Array:
         """The driver's angles of the table, rad: even steps, and both sides of knots."""
         low, high = self.motion.ends
-        turns = (high - low) / self.machine.period
-        count = max(2, min(_ROWS, math.ceil(turns * self.spec.steps) + 1))
+        count = max(2, min(_ROWS, math.ceil(self._turned * self.spec.steps)) + 1)
         return with_both_sides(np.linspace(low, high, count), self.motion.knots)
+
+    @property
+    def _turned(self) -> float:
+        """By how many turns the driver turns; of a travel which share of it."""
+        low, high = self.motion.ends
+        return self.machine.turns * (high - low) / self.machine.period
 
     @property
     def pace(self) -> Array | None:
@@ -345,7 +394,40 @@ class MachineRun(ShortRepr):
     @property
     def _words(self) -> str:
         """The run in words."""
-        return "the driver turns evenly" if self.motor is None else _WORDS[self.spec.run]
+        if self.motor is None:
+            return "the driver turns evenly"
+        if self.spec.run == REGIME and self.machine.turns > 1:
+            return f"the regime: the {self.machine.turns} turns that repeat"
+        return _WORDS[self.spec.run]
+
+    def _jump(self) -> float:
+        """Return by how much a formula of a load jumps where a period ends, at the driver, N m."""
+        whole = any(one.formula is not None and one.start is None for one in self.design.load)
+        if not (whole and self.machine.closed):
+            return 0.0
+        low, high = self.machine.knots[[0, -1]]
+        ends = np.array([low, high - _NARROW * self.machine.period])
+        loads = self.machine.load(self.machine.rows.at(ends), self.motion.mean_speed) + 0.0 * ends
+        jump = float(np.diff(loads)[0])
+        return jump if abs(jump) > 1e3 * _NARROW * np.abs(loads).max() else 0.0
+
+    def largest(self, functions: Callable[[Array], Array]) -> list[float]:
+        """Return the largest value of each of some functions, also between rows.
+
+        Parameters
+        ----------
+        functions : callable
+            ``functions(phi) -> (m, n) array`` at rising angles of the driver (n,), rad.
+        """
+        x, width = np.union1d(self.places, self.motion.places), _NARROW * self.machine.period
+        samples = functions(x)
+        which, _, values = summits(functions, samples, *neighbours(x), width)
+        return [float(values[which == number].max()) for number in range(len(samples))]
+
+    def _driven(self, phi: Array) -> Array:
+        """Return the torque of the motor with both signs, N m, and its power, W, (3, n)."""
+        driving = self.motion.torques(phi)[0]
+        return np.stack([-driving, driving, driving * self.motion.speed(phi)])
 
     def findings(self) -> tuple[Finding, ...]:
         """Return the findings of the motion."""
@@ -354,6 +436,7 @@ class MachineRun(ShortRepr):
             wanted=self.design.motor.irregularity if self.spec.run == REGIME else None,
             tolerance=self.spec.tolerance,
             place=self.place,
+            jump=self._jump(),
         )
         return run_checks(DYNAMICS, moving, self.design.limits)
 
@@ -368,11 +451,11 @@ class MachineRun(ShortRepr):
         motion, spec = self.motion, self.spec
         steady = spec.run == REGIME
         works = dict(zip(("motor", "load", "lost"), motion.works, strict=True))
-        power = columns["power_w"]
+        below, above, power = self.largest(self._driven)
         worked = f"{formatted(works['motor'], 5)} J in, {formatted(works['load'], 5)} J on loads"
         if works["lost"]:
             worked += f", {formatted(works['lost'], 4)} J lost"
-        turn = "turn" if steady else "run"
+        turn = "run" if not steady else "turn" if self.machine.turns == 1 else "period"
         whole = abs(motion.lasts) > 0.0 and motion.stopped is None
         return {
             "run": Fact(spec.run, "motion", text=self._words, shown=True),
@@ -391,28 +474,40 @@ class MachineRun(ShortRepr):
             f"{turn}_s": Fact(
                 motion.lasts, f"time of a {turn}" if steady else "time", unit="s", shown=True
             ),
+            "runup_s": Fact(
+                self.run_up,
+                "time of the run-up",
+                place=f"until the mean speed is {_RUN_UP:.0%} of the regime's",
+                unit="s",
+                shown=True,
+            )
+            if self.run_up is not None
+            else None,
             "inertia_kg_m2": Fact(
                 extent(*(one for _, one in motion.machine.inertia_ends)),
                 "moment of inertia at the driver",
                 unit="kg m2",
                 shown=True,
             ),
-            "torque_motor_nm": Fact(
-                extent(
-                    float(columns["torque_motor_nm"].min()), float(columns["torque_motor_nm"].max())
-                ),
-                "torque of the motor",
-                shown=True,
-            ),
+            "torque_motor_nm": Fact(extent(-below, above), "torque of the motor", shown=True),
             "power_w": {
                 "mean": Fact(works["motor"] / motion.lasts, "mean power", unit="W", shown=True),
-                "peak": Fact(float(power.max()), "largest power", unit="W", shown=True),
+                "peak": Fact(power, "largest power", unit="W", shown=True),
             }
             if whole
             else None,
             "works_j": Fact(works, f"works of a {turn}", text=worked, unit="", shown=True),
             "gained_j": motion.gained,
             "stopped_deg": None if motion.stopped is None else math.degrees(motion.stopped),
+            "rows": Fact(
+                len(columns["t_s"]),
+                "rows of dynamics.csv",
+                place=f"{formatted(_ROWS / self._turned, 4)} steps of a turn, not {spec.steps}",
+                unit="",
+                shown=True,
+            )
+            if self._turned * spec.steps > _ROWS
+            else None,
             "energy_residue": Fact(motion.residue, "works and energy balance to", unit=""),
         }
 
@@ -461,15 +556,22 @@ class MachineRun(ShortRepr):
         if "torque_lost_nm" in columns:
             torques["losses"] = columns["torque_lost_nm"]
         omega = columns["omega_rad_s" if "omega_rad_s" in columns else "omega1_rad_s"]
-        speed = {"speed": omega / RPM.factor}
+        speed, starts = {"speed": omega / RPM.factor}, self.spec.run == START
         inertia = {"moment of inertia": columns["inertia_kg_m2"]}
         return {
             "speed": self.chart(columns, "Speed of the driver", "speed, rpm", speed),
+            **({"run_up": self._run_up_chart(columns["t_s"], speed["speed"])} if starts else {}),
             "torques": self.chart(columns, "Torques at the driver", "torque, N m", torques),
             "inertia": self.chart(
                 columns, "Moment of inertia at the driver", "moment of inertia, kg m2", inertia
             ),
         }
+
+    def _run_up_chart(self, time: Array, rpm: Array) -> Chart:
+        """Return the chart of a start over time."""
+        mark = () if self.run_up is None else (MarkedPlace(label="run up", value=self.run_up),)
+        lines = (Line(label="speed", x=time, y=rpm),)
+        return Chart(title="Run-up", x="time, s", y="speed, rpm", lines=lines, marks=mark)
 
     def chart(
         self, columns: Mapping[str, Array], title: str, y: str, lines: Mapping[str, Array]

@@ -404,3 +404,6 @@ def test_a_study_of_several_kinds_has_the_options_of_each(
     rows = capsys.readouterr().out.splitlines()
     for option in ("--train-stiffness", "--damping-ratio", "--inertia", "--run"):
         assert len([row for row in rows if row.startswith(f"  {option} ")]) == 1
+    told = " ".join(" ".join(rows).split())
+    assert "--turns N cam: largest number" in told
+    assert "; gear-pair or mechanism: number of turns" in told

@@ -174,3 +174,11 @@ def test_a_method_that_fails_is_left() -> None:
     advanced(choice, Steps(6.0, 12), 1000)
     assert choice.fails()
     assert choice.method == "dop853"
+
+
+@pytest.mark.parametrize("start", [1e-320, 1e-16])
+def test_a_switch_that_rounding_puts_at_the_start_is_met_there(start: float) -> None:
+    falls = Mode(lambda *_: [-1.0], (Switch(lambda _, y: float(y[0]), "rest", 0.0, dips=False),))
+    modes = {"falls": falls, "rest": Mode(lambda *_: [0.0], last=True)}
+    made = integrator(parts=1)(modes, ("falls", [start]), [6.0, 7.0])
+    assert made.switches == [(pytest.approx(6.0, abs=1e-15), "falls", "rest")]

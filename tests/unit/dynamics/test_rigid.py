@@ -158,6 +158,20 @@ def test_a_weak_motor_is_refused_with_a_load_that_has_a_regime():
         regime(replace(run, machine=replace(machine, share=1.1 * share)))
 
 
+def test_a_weak_motor_is_refused_after_few_turns(monkeypatch):
+    counted, own = [], RigidRun.speed_after_turn
+
+    def after_turn(run, omega):
+        counted.append(omega)
+        return own(run, omega)
+
+    monkeypatch.setattr(RigidRun, "speed_after_turn", after_turn)
+    run = RigidRun(machine=uneven(4000.0), motor=LinearMotor(600.0, 30.0), scale=30.0)
+    with pytest.raises(InfeasibleError, match="does not turn this load"):
+        regime(run)
+    assert len(counted) < 80  # of 12 loads and a flywheel
+
+
 def test_an_even_torque_is_the_mean_of_the_load_and_keeps_the_mean_speed():
     machine = uneven()
     motion: Any = even_torque(RigidRun(machine=machine, motor=ConstantMotor(), scale=20.0), 20.0)
@@ -177,6 +191,21 @@ def test_the_least_flywheel_makes_the_wanted_irregularity_and_a_lighter_one_miss
     assert motion.irregularity == pytest.approx(0.03, rel=1e-8)
     assert with_(0.99 * least).irregularity > 0.03
     assert flywheel(with_, 0.9, 1.0)[0] == 0.0
+
+
+@pytest.mark.parametrize("part", [0.8, 0.95, 1.3])
+def test_the_irregularity_falls_as_the_flywheel_grows_also_where_inertia_balances_the_load(part):
+    # at 20 rad/s a part of the load is that which the change of the inertia takes
+    machine = reduced(
+        lambda x: 2.0 + 1.8 * np.cos(x),
+        lambda x: -1.8 * np.sin(x),
+        lambda x: 100.0 + 360.0 * part * np.sin(x) + 30.0 * np.cos(2.0 * x),
+    )
+    motor, found = LinearMotor(300.0, 30.0), []
+    for size in (0.5, 1.0, 4.0, 16.0):
+        run = RigidRun(machine=machine.with_flywheel(size), motor=motor, scale=30.0, rtol=1e-7)
+        found.append(regime(run).irregularity)
+    assert found == sorted(found, reverse=True)
 
 
 def test_a_flywheel_neglects_only_a_square_of_the_irregularity():
@@ -270,6 +299,10 @@ def test_a_motor_by_a_table_holds_the_speed_at_which_it_has_the_torque_of_the_lo
     motor = TableMotor((0.0, 28.0, 29.0, 30.0), (5.0, 8.0, 60.0, 0.0))
     assert motor.torque(0.0, np.array([0.0, 28.0, 29.0, 30.0])) == pytest.approx([5, 8, 60, 0])
     assert motor.torque(0.0, 31.0) == pytest.approx(-60.0)
+    # below its first speed it keeps the torque there
+    above = TableMotor((10.0, 20.0, 30.0), (5.0, 8.0, 0.0))
+    assert above.torque(0.0, 2.0) == 5.0
+    assert above.torque(0.0, np.array([0.0, 9.0, 10.0, 40.0])) == pytest.approx([5, 5, 5, -8])
     machine = reduced(constant(0.05), constant(0.0), constant(50.0))
     motion = regime(RigidRun(machine=machine, motor=motor, scale=30.0))
     assert motor.torque(0.0, motion.mean_speed) == pytest.approx(50.0, rel=1e-6)
@@ -310,16 +343,22 @@ def test_an_even_torque_may_drive_or_brake_a_load_that_depends_on_the_speed():
     assert motion.motor.size == pytest.approx(-30.0 + 0.5 * 20.0, rel=1e-2)
 
 
-@pytest.mark.slow
-def test_an_even_torque_that_would_stop_the_machine_is_refused():
+def test_an_even_torque_that_would_stop_the_machine_is_refused_after_few_turns(monkeypatch):
+    counted, own = [], RigidRun.from_speed
+
+    def from_speed(run, omega):
+        counted.append(omega)
+        return own(run, omega)
+
+    monkeypatch.setattr(RigidRun, "from_speed", from_speed)
     machine = reduced(constant(1.0), constant(0.0), lambda x: 50.0 * np.sin(x))
     run = RigidRun(machine=machine, motor=ConstantMotor(), scale=6.0)
     with pytest.raises(InfeasibleError, match="stops"):  # least possible: half of sqrt(200)
         even_torque(run, 6.9)
+    assert len(counted) < 50
     assert even_torque(run, 7.2).mean_speed == pytest.approx(7.2, rel=1e-9)
 
 
-@pytest.mark.slow
 def test_a_flywheel_is_found_for_a_machine_that_stops_without_one():
     # a short load needs more energy than the machine has
     knots = (0.0, 3.0, 3.5, TURN)
@@ -383,7 +422,8 @@ def test_the_moment_of_inertia_has_its_exact_ends():
 )
 def test_motors_have_the_torques_of_their_tables_in_n_m(spec, phi, omega, torque):
     # inside, torques are N mm and those of springs N mm/rad; rows of speeds are rpm
-    assert motor_of(spec).torque(phi, omega) == pytest.approx(torque, rel=1e-12)
+    motor: Any = motor_of(spec)
+    assert motor.torque(phi, omega) == pytest.approx(torque, rel=1e-12)
 
 
 def test_the_slope_of_the_inertia_of_a_pair_is_its_derivative():

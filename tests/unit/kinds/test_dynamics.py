@@ -11,6 +11,9 @@ import pytest
 
 import gearcam as gc
 from gearcam.base.errors import DesignError, InfeasibleError
+from gearcam.base.findings import run_checks
+from gearcam.dynamics.checks import VibratingTeeth
+from gearcam.dynamics.settings import VIBRATION
 
 RPM = math.pi / 30.0
 
@@ -196,6 +199,40 @@ def test_a_machine_without_inertia_at_some_place_is_refused_by_it(tmp_path):
         gc.build(gc.load(tmp_path / "ram.toml")).study("dynamics")
 
 
+def test_a_machine_that_repeats_after_two_turns_says_so(tmp_path):
+    one = '{ name = "motor", even = true, speed_rpm = 100 }'
+    text = MACHINE % '{ of = "crank", mass_kg = 7.3, at_mm = [13.6, 10.1] }'
+    text = text.replace(one, one + ', { name = "slow", even = true, ratio = 0.5 }')
+    text = text.replace('on = "motor", joint', 'on = "slow", joint').replace("= -20", "= -2")
+    motor = 'motor = { type = "linear", start_torque_nm = 300, idle_rpm = 120 }\n'
+    old = 'motor = { type = "constant", torque_nm = 30 }\n'
+    (tmp_path / "two.toml").write_text(text.replace(old, motor))
+    found = gc.build(gc.load(tmp_path / "two.toml")).study("dynamics")
+    assert found.columns["theta_deg"][-1] == pytest.approx(720.0)  # it turns twice, not four times
+    text = text.replace('run = "start", turns = 2', "steps = 50").replace(old, motor)
+    (tmp_path / "two.toml").write_text(text)
+    found = gc.build(gc.load(tmp_path / "two.toml")).study("dynamics")
+    facts = found.facts
+    assert facts["dynamics.period_s"] * facts["dynamics.speed_rpm.over_time"] / 60.0 == (
+        pytest.approx(2.0, rel=1e-9)
+    )
+    assert "dynamics.turn_s" not in facts
+    assert any("2 turns that repeat" in line for line in facts.lines("dynamics."))
+    steps = np.arange(101) * 7.2
+    assert np.isclose(found.columns["theta_deg"][:, None], steps, atol=1e-9).any(axis=0).all()
+
+
+def test_a_load_that_does_no_work_is_none(tmp_path):
+    text = MACHINE % '{ of = "crank", mass_kg = 7.3, at_mm = [13.6, 10.1] }'
+    text = text.replace('{ name = "bed" }', '{ name = "bed", direction_deg = 33.3 }')
+    across = f"{-123.4 * math.sin(math.radians(33.3))!r}, {123.4 * math.cos(math.radians(33.3))!r}"
+    text = text.replace('on = "motor", torque_nm = -20', f'on = "end", force_n = [{across}]')
+    (tmp_path / "across.toml").write_text(text)
+    found = gc.build(gc.load(tmp_path / "across.toml")).study("dynamics")
+    assert found.facts["dynamics.works_j.motor"] == pytest.approx(30.0 * 4.0 * math.pi)
+    assert abs(found.facts["dynamics.works_j.load"]) < 1e-9
+
+
 PAIR = {"dynamics.inertia_kg_m2": 0.2}
 LINEAR = {"type": "linear", "start_torque_nm": 20000, "idle_rpm": 190}
 
@@ -253,6 +290,11 @@ def test_a_table_that_ends_below_the_speed_is_refused_with_both_speeds():
     assert (caught.value.value or 0.0) > 200.0
     rows = {"torque_nm": [9000, 3000, 100, -900], "rpm": [0, 50, 300, 400]}
     assert study("loaded_nail_machine", {**PAIR, "motor": {**motor, **rows}}).complete
+    rows = {"torque_nm": [9000, 100, -900], "rpm": [20, 300, 400]}
+    start = {"dynamics.run": "start", "dynamics.turns": 1, "motor": {**motor, **rows}}
+    with pytest.raises(InfeasibleError, match="does not reach") as caught:
+        study("circular", {**PAIR, **start})
+    assert (caught.value.value, caught.value.limit) == (0.0, pytest.approx(20.0))
 
 
 def test_coasting_ends_where_the_energy_does():
@@ -336,3 +378,87 @@ def test_friction_takes_power_also_where_teeth_are_driven():
     assert columns["torque_mesh_nm"].min() < -0.5
     assert columns["torque_lost_nm"].min() > -1e-9
     assert columns["torque_lost_nm"][columns["torque_mesh_nm"] < -0.5].max() > 1e-3
+
+
+SMALL = {"dynamics.inertia_kg_m2": [0.02, 0.03], "motor": {"type": "linear"}}
+SMALL["motor"] |= {"start_torque_nm": 200, "idle_rpm": 120}
+
+
+def test_the_largest_power_is_that_between_rows():
+    run = {"dynamics.run": "start", "dynamics.steps": 12}
+    found = study("circular", {**SMALL, **run})
+    # of a linear motor that runs up: at half of its speed without load
+    most = 0.25 * 200.0 * 120.0 * RPM
+    assert found.facts["dynamics.power_w.peak"] == pytest.approx(most, rel=1e-9)
+    assert found.columns["power_w"].max() < 0.99 * most
+    # and of a load that is narrower than a step
+    load = [{"on": "wheel2", "formula": "20 + 40*exp(5000*(cos(phi1 - 2) - 1))"}]
+    changes = {"dynamics.inertia_kg_m2": 0.1, "dynamics.steps": 12, "drive.speed_rpm": 100}
+    facts = study("circular", {**changes, "load": load}).facts
+    assert facts["dynamics.torque_motor_nm.max"] == pytest.approx(60.0 * 14.0 / 35.0, rel=1e-9)
+    assert facts["dynamics.torque_motor_nm.min"] == pytest.approx(20.0 * 14.0 / 35.0, rel=1e-9)
+
+
+def test_a_resonance_is_told_with_the_speed_that_makes_it():
+    places, ratio = np.array([0.0, 1.0, 2.0]), np.array([0.4, 0.48, 1.04])
+    teeth = VibratingTeeth(lost=[], phi1=places, ratio=ratio, place=str)
+    found = [one.message for one in run_checks(VIBRATION, teeth, {})]
+    assert [one.split("exactly so at ")[1].split(" times")[0] for one in found] == [
+        "0.9615",
+        "1.042",
+    ]
+
+
+@pytest.mark.parametrize(("formula", "jump"), [("40*cos(phi1/2)", -80), ("40*cos(phi1)", 0)])
+def test_a_formula_that_does_not_repeat_is_noted_with_its_jump(formula, jump):
+    found = study("circular", {**SMALL, "load": [{"on": "wheel2", "formula": formula}]})
+    ratio = 14.0 / 35.0
+    notes = [one.value for one in found.study_findings if one.code == "load-jumps"]
+    assert notes == ([pytest.approx(ratio * jump, rel=1e-6)] if jump else [])
+
+
+@pytest.mark.parametrize("torque", [-20.0, 20.0])
+def test_loads_that_drive_are_noted_with_their_work(torque):
+    found = study("circular", {**SMALL, "load": [{"on": "wheel2", "torque_nm": torque}]})
+    notes = [one.value for one in found.study_findings if one.code == "load-drives"]
+    work = 2.0 * math.pi * torque * 14.0 / 35.0
+    assert notes == ([pytest.approx(work, rel=1e-9)] if torque < 0.0 else [])
+
+
+def test_a_load_that_no_polynomial_has_is_refused_with_what_is_allowed():
+    load = [{"on": "wheel2", "formula": "100/omega2"}]
+    with pytest.raises(InfeasibleError, match="a load is no polynomial of the speed") as caught:
+        study("circular", {**SMALL, "load": load})
+    assert "omega2" in caught.value.nearest
+
+
+def test_a_table_with_fewer_rows_than_steps_says_so(monkeypatch):
+    assert "dynamics.rows" not in study("circular", SMALL).facts
+    monkeypatch.setattr("gearcam.kinds.machine_motion._ROWS", 100)
+    found = study("circular", {**SMALL, "dynamics.run": "start", "dynamics.turns": 4})
+    assert found.facts["dynamics.rows"] == len(found.columns["t_s"]) < 400
+    (line,) = (one for one in found.facts.lines("dynamics.") if "rows of dynamics.csv" in one)
+    assert "25 steps of a turn, not 360" in line
+
+
+def test_a_start_has_run_up_when_a_turn_has_nearly_the_speed_of_the_regime():
+    inertia = {"dynamics.inertia_kg_m2": [2.0, 12.5], "dynamics.run": "start"}
+    changes = {**SMALL, **inertia, "dynamics.turns": 12}
+    found = study("circular", changes)
+    # J = 2 + 0.16*12.5 = 4: omega = idle*(1 - exp(-t/tau)), tau = J*idle/start
+    idle = 120.0 * RPM
+    tau, turn = 4.0 * idle / 200.0, 2.0 * math.pi / idle
+
+    def angle(t: float) -> float:
+        return idle * (t - tau * (1.0 - math.exp(-t / tau)))
+
+    low, high = turn / 0.99, 20.0
+    while high - low > 1e-12:
+        middle = 0.5 * (low + high)
+        short = angle(middle) - angle(middle - turn / 0.99) < 2.0 * math.pi
+        low, high = (middle, high) if short else (low, middle)
+    assert found.facts["dynamics.runup_s"] == pytest.approx(low, rel=1e-7)
+    (speed,) = found.charts["run_up"].lines
+    assert speed.y == pytest.approx(120.0 * (1.0 - np.exp(-speed.x / tau)), abs=1e-4)
+    assert "dynamics.runup_s" not in study("circular", {**changes, "dynamics.turns": 1}).facts
+    assert "run_up" not in study("circular", SMALL).charts

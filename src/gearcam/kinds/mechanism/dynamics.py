@@ -68,8 +68,11 @@ def machine_of(work: VirtualWork, speed: float) -> ReducedMachine:
         inertia = work.reduced_inertia(q, 1).derivatives()
         return np.stack([*(one + np.zeros(q.shape) for one in inertia), *coefficients(q)])
 
-    sizes = np.zeros(len(rows(places)))
-    sizes[1] = np.abs(rows(places)[0]).max()  # of an even inertia the derivative is rounding
+    largest = np.abs(rows(places)).max(axis=1)
+    # of an even inertia the derivative is rounding, and the moment of loads that do no work
+    usual = largest[0] * speed ** (4.0 - np.arange(len(largest)))
+    sizes = np.where(largest <= _EXACT * usual, usual, 0.0)
+    sizes[:2] = 0.0, largest[0]
     try:
         tabled = Tabled(rows, work.knots, _EXACT, closed=work.linkage.closed, sizes=sizes)
     except NotSmoothError as error:
