@@ -18,6 +18,7 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.dynamics.integrate import Integrator, Mode, Motion, MotionPiece, Switch
 from gearcam.dynamics.machine import TURN, Machine
+from gearcam.dynamics.motion import MachineMotion, residue
 from gearcam.dynamics.motors import Motor
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.gauss import gauss_cells
@@ -40,34 +41,21 @@ _PROBES: Final = 65
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class RigidMotion(ShortRepr):
-    """A motion of a machine.
+class RigidMotion(MachineMotion):
+    """A motion of a machine with rigid members.
 
     Parameters
     ----------
-    machine : Machine
-        What moves.
-    motor : Motor or None
-        What turns it; None at an even speed.
-    knots : (n,) array, rad
-        From the first to the last angle; between them it is smooth.
+    machine, motor, knots
+        See `MachineMotion`.
     motion : Motion or None
         Energy, J, and time, s, over the driver's angle; None at an even speed.
     even : float, rad/s
         That speed.
     """
 
-    machine: Machine
-    motor: Motor | None
-    knots: Array
     motion: Motion | None = None
     even: float = 0.0
-
-    @property
-    def ends(self) -> tuple[float, float]:
-        """First and last angle, rad: where it stopped, if it did."""
-        last = self.knots[-1] if self.stopped is None else self.stopped
-        return float(self.knots[0]), float(last)
 
     def rows(self, phi: Array) -> Array:
         """Return the rows of the machine at angles, (m, n)."""
@@ -120,7 +108,7 @@ class RigidMotion(ShortRepr):
         knots = self.knots[(self.knots > low) & (self.knots < high)]
         return np.unique(np.concatenate([[low], knots, steps, inside, [high]]))
 
-    @property
+    @cached_property
     def places(self) -> Array:
         """Angles, rad, between which nothing of the motion is missed."""
         cells = self._cells
@@ -137,21 +125,6 @@ class RigidMotion(ShortRepr):
         places, values = extremes(self._speed_and_slope, self._cells, cells=True)
         low, high = int(values.argmin()), int(values.argmax())
         return (float(places[low]), float(values[low])), (float(places[high]), float(values[high]))
-
-    @property
-    def mean_speed(self) -> float:
-        """Half the sum of the least and the largest speed, rad/s (000, 5.5)."""
-        return 0.5 * (self.speeds[0][1] + self.speeds[1][1])
-
-    @property
-    def irregularity(self) -> float:
-        """``(max - min)/mean`` of the speed (000, 5.6)."""
-        return (self.speeds[1][1] - self.speeds[0][1]) / self.mean_speed
-
-    @property
-    def lasts(self) -> float:
-        """Time from the first to the last angle, s."""
-        return float(np.diff(self.time(np.array(self.ends)))[0])
 
     @cached_property
     def works(self) -> tuple[float, float, float]:
@@ -171,19 +144,15 @@ class RigidMotion(ShortRepr):
 
     @property
     def residue(self) -> float:
-        """What the balance of works and energy leaves, over the larger of the energies in and out.
+        """What the balance of works and energy leaves (see `residue`).
 
         In is what it had at the start and the motor's work, out what it has at the end and the
-        works on loads and lost; a negative work counts on the other side (see `StiffRun.residue`).
+        works on loads and lost.
         """
         first = np.array(self.ends[:1])
         inertia = self.machine.inertia(self.rows(first))
         before = 0.5 * float((inertia * self.speed(first) ** 2)[0])
-        ins = (before, self.works[0])
-        outs = (before + self.gained, *self.works[1:])
-        into = sum(max(one, 0.0) for one in ins) - sum(min(one, 0.0) for one in outs)
-        out = sum(max(one, 0.0) for one in outs) - sum(min(one, 0.0) for one in ins)
-        return abs(into - out) / max(into, out) if into or out else 0.0
+        return residue((before, self.works[0]), (before + self.gained, *self.works[1:]))
 
     @cached_property
     def stopped(self) -> float | None:

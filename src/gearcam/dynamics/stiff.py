@@ -36,6 +36,7 @@ from numpy.typing import ArrayLike
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import InfeasibleError
 from gearcam.dynamics.integrate import Integrator, Mode, Motion, Switch
+from gearcam.dynamics.motion import residue
 from gearcam.dynamics.tabled import Tabled
 from gearcam.numeric.arrays import Array
 
@@ -467,17 +468,11 @@ class StiffRun(ShortRepr):
 
     @cached_property
     def residue(self) -> float:
-        """Error of the energy balance over the larger of the energies in and out.
-
-        In is what it had at the start and the motor's work, out what it has at the end, the work on
-        the load and what was lost; a negative work counts on the other side.
-        """
+        """What the balance of works and energy leaves (see `gearcam.dynamics.motion.residue`)."""
         motor, load, lost = self.end[4:].tolist()
         before = self.pair.energy(self.start.phi1, (0.0, *self.start[1:]))
         after = self.pair.energy(self.motion.place, self.end)
-        into = before + max(motor, 0.0) + max(-load, 0.0)
-        out = after + lost + max(load, 0.0) + max(-motor, 0.0)
-        return abs(into - out) / max(into, out)
+        return residue((before, motor), (after, load, lost))
 
     def difference(self, other: StiffRun, steps: int = 720) -> tuple[float, float]:
         """Return the largest differences from another run: of the lag, rad, and of w1, rad/s.

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.base.display import ShortRepr
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.facts import Fact, Tree, extent
 from gearcam.base.findings import Finding, run_checks
@@ -17,6 +16,7 @@ from gearcam.base.numerals import formatted
 from gearcam.base.quantities import ARCSEC, RPM
 from gearcam.dynamics.checks import VibratingTeeth
 from gearcam.dynamics.mesh_stiffness import Smooth, backlash_angle, mesh_stiffness
+from gearcam.dynamics.motion import MachineMotion
 from gearcam.dynamics.settings import COAST as COASTING
 from gearcam.dynamics.settings import VIBRATION
 from gearcam.dynamics.stiff import APART, COAST, StiffPair
@@ -24,17 +24,17 @@ from gearcam.dynamics.tabled import Tabled
 from gearcam.kinds.gear_pair.pair_motion import MovingPair, PairRun
 from gearcam.kinds.gear_pair.stress import elasticity
 from gearcam.mechanics.wheel_load import WheelLoadSpec
+from gearcam.numeric.narrowing import neighbours, peaks, summits
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Line, MarkedPlace
 from gearcam.results.study import silent
 
 if TYPE_CHECKING:
-    from gearcam.dynamics.machine import Machine, PairMachine
-    from gearcam.dynamics.motors import Motor
+    from gearcam.dynamics.machine import PairMachine
     from gearcam.dynamics.settings import PairDynamicsSpec
     from gearcam.dynamics.stiff import LostContact, StiffRun
     from gearcam.kinds.gear_pair.elastic_pair import ElasticPair
-    from gearcam.numeric.arrays import Array
+    from gearcam.numeric.arrays import Array, Ints
     from gearcam.results.study import Progress
 
 _PER_TOOTH: Final = 10
@@ -52,6 +52,9 @@ _LONG: Final = 5.0
 _JUMPS: Final = 0.05
 """Error of the smooth stiffness, over its mean, above which it is printed."""
 
+_NARROW: Final = 1e-6
+"""Width, over the last angle, to which the peaks of a vibration are narrowed."""
+
 _TURN: Final = 2.0 * math.pi
 
 _LINES: Final = 4096
@@ -59,27 +62,20 @@ _LINES: Final = 4096
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class ElasticMotion(ShortRepr):
-    """The last turn of a run with elastic teeth (see `gearcam.dynamics.motion`).
+class ElasticMotion(MachineMotion):
+    """The last turn of a run with elastic teeth.
 
     Parameters
     ----------
-    machine : Machine
-        The machine with rigid teeth.
-    motor : Motor or None
-        What turns it.
+    machine, motor, knots
+        See `MachineMotion`; switches are knots too.
     run : StiffRun
         The motion.
-    knots : (n,) array, rad
-        Where it is not smooth, its ends and switches included.
     turned : float, rad
         By how much the driver has turned before: angles are those of the last turn.
     """
 
-    machine: Machine
-    motor: Motor | None
     run: StiffRun
-    knots: Array
     turned: float
 
     def at(self, phi: Array) -> dict[str, Array]:
@@ -89,11 +85,6 @@ class ElasticMotion(ShortRepr):
     def states(self, phi: Array) -> Array:
         """Return the states at angles (n,), rad (see `StiffRun.states`)."""
         return self.run.states(phi + self.turned)
-
-    @property
-    def ends(self) -> tuple[float, float]:
-        """First and last angle, rad."""
-        return float(self.knots[0]), float(self.knots[-1])
 
     @cached_property
     def places(self) -> Array:
@@ -125,38 +116,20 @@ class ElasticMotion(ShortRepr):
 
     @cached_property
     def speeds(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Least and largest speed of the driver, each as (angle, rad/s), among `places`."""
-        speed = self.values["w1"]
-        low, high = int(speed.argmin()), int(speed.argmax())
-        return (
-            (float(self.places[low]), float(speed[low])),
-            (float(self.places[high]), float(speed[high])),
-        )
+        """Least and largest speed of the driver, each as (angle, rad/s)."""
 
-    @property
-    def mean_speed(self) -> float:
-        """Half the sum of both, rad/s."""
-        return 0.5 * (self.speeds[0][1] + self.speeds[1][1])
+        def both(phi: Array) -> Array:
+            return np.outer([-1.0, 1.0], self.speed(phi))
 
-    @property
-    def irregularity(self) -> float:
-        """``(max - min)/mean`` of the speed."""
-        return (self.speeds[1][1] - self.speeds[0][1]) / self.mean_speed
-
-    @cached_property
-    def _over(self) -> Array:
-        """Time, and works, over the turn, (7,)."""
-        return np.diff(self.states(np.array(self.ends)))[:, 0]
-
-    @property
-    def lasts(self) -> float:
-        """Time of the turn, s."""
-        return float(self._over[0])
+        x = self.places
+        which, places, values = summits(both, both(x), *neighbours(x), _NARROW * x[-1])
+        low, high = (max(np.flatnonzero(which == k), key=values.__getitem__) for k in (0, 1))
+        return (float(places[low]), -float(values[low])), (float(places[high]), float(values[high]))
 
     @cached_property
     def works(self) -> tuple[float, float, float]:
         """Work of the motor, on the loads, and lost, J."""
-        motor, load, lost = self._over[4:].tolist()
+        motor, load, lost = np.diff(self.states(np.array(self.ends)))[4:, 0].tolist()
         return motor, load, lost
 
     @cached_property
@@ -346,9 +319,14 @@ class ElasticRun(PairRun):
 
     def _most(self, moving: MovingPair) -> Array:
         """Return angles, rad, at which the teeth may have most: also those of their vibrations."""
-        torque = np.abs(self.motion.values["mesh"])
-        summit = (torque[1:-1] >= torque[:-2]) & (torque[1:-1] > torque[2:])
-        return np.append(super()._most(moving), self.motion.places[1:-1][summit])
+        torque, x = np.abs(self.motion.values["mesh"]), self.motion.places
+        summit = np.flatnonzero((torque[1:-1] >= torque[:-2]) & (torque[1:-1] > torque[2:]))
+
+        def carried(phi1: Array, _: Ints) -> Array:
+            return np.abs(self.mesh_torque(phi1.ravel())).reshape(phi1.shape)
+
+        found, _ = peaks(carried, x[summit], x[summit + 2], _NARROW * x[-1])
+        return np.append(super()._most(moving), found)
 
     @cached_property
     def places(self) -> Array:
@@ -410,12 +388,6 @@ class ElasticRun(PairRun):
         return super().facts(columns) | {
             **({} if given else elasticity(self._elements)),
             "run": Fact(self.spec.run, "motion", text=self._words, shown=True),
-            "mesh_torque_nm": Fact(
-                extent(float(values["mesh"].min()), float(values["mesh"].max())),
-                "torque of the teeth on the driven wheel",
-                unit="N m",
-                shown=True,
-            ),
             "stiffness_nm_rad": Fact(
                 extent(float(stiffness.min()), float(stiffness.max())),
                 f"stiffness of the mesh, {source}",

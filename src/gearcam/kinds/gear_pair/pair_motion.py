@@ -232,6 +232,11 @@ class PairRun(MachineRun):
         return np.asarray(machine.mesh_torque(row, omega, motion.driving(phi1, omega))[0])
 
     @cached_property
+    def _mesh_range(self) -> list[float]:
+        """Largest torque of the teeth against and with the driven wheel's motion, N m."""
+        return self.largest(lambda phi1: np.outer([-1.0, 1.0], self.mesh_torque(phi1)))
+
+    @cached_property
     def loaded(self) -> LoadedPair:
         """The forces of the teeth at the places of the table, and where they are most."""
         moving = MovingPair(self.result, self.mesh_torque)
@@ -272,11 +277,11 @@ class PairRun(MachineRun):
     def facts(self, columns: Any) -> Tree:
         """Return the facts of the study."""
         forces, friction = self.loaded.forces, self.design.friction
-        mesh = columns["torque_mesh_nm"]
+        below, above = self._mesh_range
         row, without = forces.teeth.points.step, friction.left_out
         return super().facts(columns) | {
             "mesh_torque_nm": Fact(
-                extent(float(mesh.min()), float(mesh.max())),
+                extent(-below, above),
                 "torque of the teeth on the driven wheel",
                 unit="N m",
                 shown=True,
