@@ -11,7 +11,7 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.base.findings import Remark, check
 from gearcam.base.numerals import formatted
-from gearcam.base.quantities import NUMBER, Param
+from gearcam.base.quantities import NUMBER, RPM, Param
 from gearcam.dynamics.motion import MachineMotion
 from gearcam.dynamics.settings import DYNAMICS, VIBRATION
 from gearcam.dynamics.stiff import LostContact
@@ -132,6 +132,8 @@ class VibratingTeeth(ShortRepr):
         Places of the turn.
     ratio : (n,) array
         Frequency of the teeth over the natural frequency there.
+    speed : float, rad/s
+        Mean speed of the driver.
     place : callable
         ``place(phi1)`` returns an angle in words.
     """
@@ -139,6 +141,7 @@ class VibratingTeeth(ShortRepr):
     lost: list[LostContact]
     phi1: Array
     ratio: Array
+    speed: float
     place: Callable[[float], str]
 
 
@@ -182,10 +185,10 @@ def resonance(teeth: VibratingTeeth, limit: float) -> Iterator[Remark]:
         near = np.abs(teeth.ratio / whole - 1.0)
         worst = int(near.argmin())
         if near[worst] <= limit:
-            exactly = formatted(whole / float(teeth.ratio[worst]), 4)
+            exactly = formatted(teeth.speed * whole / float(teeth.ratio[worst]) / RPM.factor, 4)
             yield Remark(
-                f"Teeth come at {words} of their mesh here, exactly so at {exactly} times this "
-                "speed: another speed, inertia or stiffness avoids the resonance.",
+                f"Teeth come at {words} of their mesh here, exactly so at a mean speed of "
+                f"{exactly} rpm: another speed, inertia or stiffness avoids the resonance.",
                 teeth.place(float(teeth.phi1[worst])),
                 float(teeth.ratio[worst]),
                 limit=whole,

@@ -401,11 +401,11 @@ def test_the_largest_power_is_that_between_rows():
 
 def test_a_resonance_is_told_with_the_speed_that_makes_it():
     places, ratio = np.array([0.0, 1.0, 2.0]), np.array([0.4, 0.48, 1.04])
-    teeth = VibratingTeeth(lost=[], phi1=places, ratio=ratio, place=str)
+    teeth = VibratingTeeth(lost=[], phi1=places, ratio=ratio, speed=100.0 * RPM, place=str)
     found = [one.message for one in run_checks(VIBRATION, teeth, {})]
-    assert [one.split("exactly so at ")[1].split(" times")[0] for one in found] == [
-        "0.9615",
-        "1.042",
+    assert [one.split("exactly so at ")[1].split(":")[0] for one in found] == [
+        "a mean speed of 96.15 rpm",
+        "a mean speed of 104.2 rpm",
     ]
 
 

@@ -366,7 +366,11 @@ class ElasticRun(PairRun):
         """Return the findings of the motion, the forces of the teeth, and their vibration."""
         phi1, ratio = self.tooth_frequency
         teeth = VibratingTeeth(
-            lost=self.motion.lost_contact, phi1=phi1, ratio=ratio, place=self.place
+            lost=self.motion.lost_contact,
+            phi1=phi1,
+            ratio=ratio,
+            speed=self.motion.mean_speed,
+            place=self.place,
         )
         found = super().findings()
         if COAST not in self.motion.modes(self.places):  # dampers pull a little where teeth part

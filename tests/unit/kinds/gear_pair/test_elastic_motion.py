@@ -232,3 +232,5 @@ def test_the_frequency_of_the_teeth_is_their_number_times_the_speed():
     made = gc.build(design("circular", **changes)).study("dynamics")
     (told,) = (one for one in made.study_findings if one.code == "resonance")
     assert told.value == pytest.approx(0.95, abs=0.015)
+    told_rpm = float(told.message.split("a mean speed of ")[1].split(" rpm")[0])
+    assert told_rpm * told.value == pytest.approx(changes["drive.speed_rpm"], rel=1e-3)
