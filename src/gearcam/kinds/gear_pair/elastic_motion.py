@@ -25,7 +25,6 @@ from gearcam.kinds.gear_pair.pair_motion import MovingPair, PairRun
 from gearcam.kinds.gear_pair.stress import elasticity
 from gearcam.mechanics.wheel_load import WheelLoadSpec
 from gearcam.numeric.narrowing import neighbours, peaks, summits
-from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Line, MarkedPlace
 from gearcam.results.study import silent
 
@@ -327,13 +326,6 @@ class ElasticRun(PairRun):
 
         found, _ = peaks(carried, x[summit], x[summit + 2], _NARROW * x[-1])
         return np.append(super()._most(moving), found)
-
-    @cached_property
-    def places(self) -> Array:
-        """The driver's angles of the table, rad."""
-        low, high = self.motion.ends
-        even = np.linspace(low, high, self.spec.steps + 1)
-        return with_both_sides(even, self.motion.knots)
 
     def columns(self) -> dict[str, Array]:
         """Return the columns of ``dynamics.csv``."""
