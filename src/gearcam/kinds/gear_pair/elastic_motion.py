@@ -372,8 +372,8 @@ class ElasticRun(PairRun):
     def facts(self, columns: Any) -> Tree:
         """Return the facts of the study."""
         run, (lag, speed) = self.motion.run, self._runs[0].difference(self._runs[1])
-        values, natural = self.motion.values, self.pair.frequency(self.pair.places) / _TURN
-        bent = values["lag"] / ARCSEC.factor
+        natural = self.pair.frequency(self.pair.places) / _TURN
+        behind, ahead = self.largest(lambda phi: np.outer([1.0, -1.0], self.motion.states(phi)[2]))
         arcs = self.motion.lost_contact
         given = self._settings.stiffness is not None
         source = "given" if given else "by finite elements"
@@ -398,7 +398,7 @@ class ElasticRun(PairRun):
                 shown=True,
             ),
             "lag_arcsec": Fact(
-                extent(float(bent.min()), float(bent.max())),
+                extent(-ahead / ARCSEC.factor, behind / ARCSEC.factor),
                 "lag of the driven wheel",
                 place="from the middle of the backlash",
                 unit="arcsec",
