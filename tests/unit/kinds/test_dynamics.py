@@ -285,11 +285,12 @@ def test_a_travel_has_no_regime_but_starts_and_runs_once():
 def test_a_table_that_ends_below_the_speed_is_refused_with_both_speeds():
     motor = {"type": "table", "torque_nm": [9000, 3000, 2900], "rpm": [0, 50, 60]}
     with pytest.raises(InfeasibleError, match="does not reach") as caught:
-        study("loaded_nail_machine", {**PAIR, "motor": motor})
+        study("loaded_nail_machine", {**PAIR, "friction": {}, "motor": motor})
     assert caught.value.limit == 60.0
     assert (caught.value.value or 0.0) > 200.0
     rows = {"torque_nm": [9000, 3000, 100, -900], "rpm": [0, 50, 300, 400]}
-    assert study("loaded_nail_machine", {**PAIR, "motor": {**motor, **rows}}).complete
+    changes = {**PAIR, "friction": {}, "motor": {**motor, **rows}}
+    assert study("loaded_nail_machine", changes).complete
     rows = {"torque_nm": [9000, 100, -900], "rpm": [20, 300, 400]}
     start = {"dynamics.run": "start", "dynamics.turns": 1, "motor": {**motor, **rows}}
     with pytest.raises(InfeasibleError, match="does not reach") as caught:

@@ -84,7 +84,8 @@ def test_stiff_teeth_move_as_rigid_ones():
 
 
 def test_an_even_motor_has_the_torque_that_keeps_the_mean_speed():
-    changes = {"motor": {"type": "constant", "flywheel_kg_m2": 50}, "dynamics.turns": 1}
+    motor = {"type": "constant", "flywheel_kg_m2": 50}
+    changes = {"motor": motor, "dynamics.turns": 1, "drive.speed_rpm": 80}
     found = gc.build(design("ellipse", **changes)).study("dynamics")
     # wheels of equal teeth without friction: the torque of the load
     assert found.columns["torque_motor_nm"] == pytest.approx(40.0, rel=1e-6)
@@ -199,7 +200,7 @@ def test_a_pair_that_stops_in_an_early_turn_is_stated_up_to_there():
 
 def test_angles_and_loads_of_the_driven_wheel_are_those_of_its_own_motion():
     load = [{"on": "wheel2", "formula": "15*omega2"}]
-    changes = {"load": load, "dynamics": {**ELASTIC, "turns": 1}}
+    changes = {"load": load, "dynamics": {**ELASTIC, "turns": 1}, "drive.speed_rpm": 80}
     made = gc.build(design("circular", **changes))
     columns, ratio = made.study("dynamics").columns, made.law.ratio(np.zeros(1))[0]
     w1, w2 = columns["omega1_rad_s"], columns["omega2_rad_s"]
