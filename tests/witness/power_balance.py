@@ -82,7 +82,7 @@ class PowerBalance:
         for one in self.design.slide:
             found[one.name] = found[one.joint] = (one.joint, one.on, f"{one.on}.way")
         for one in self.design.hoist:
-            place = (one.joint, f"{one.name}.way", f"{one.name}.guide")
+            place = (one.joint, one.way, one.guide)
             found[one.name] = found[one.joint] = place
         return found
 
