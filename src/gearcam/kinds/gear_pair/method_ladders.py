@@ -22,7 +22,7 @@ _TRUE_TO: Final = 1e-9
 _OWN: Final = "auto"
 
 _OTHERS: Final = ("radau", "lsoda", "dop853")
-"""BDF is left out: it is slower than each of them in all cases, forty times where Radau is best."""
+"""BDF is left out: for the same error it is slower than each of them in all cases."""
 
 
 @cache
