@@ -37,6 +37,20 @@ _AT_KNOT: Final = 1e-9
 """Distance from a knot, rad, within which a place is called by it."""
 
 
+def least_and_largest(
+    places: Array, values: Array
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return the least and the largest of some values, each as (place, value).
+
+    Parameters
+    ----------
+    places, values : (n,) arrays
+        The values and where they are.
+    """
+    low, high = int(values.argmin()), int(values.argmax())
+    return (float(places[low]), float(values[low])), (float(places[high]), float(values[high]))
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Machine(ABC, ShortRepr):
     """A machine over its driver's angle.
@@ -54,7 +68,7 @@ class Machine(ABC, ShortRepr):
     """
 
     lighter: ClassVar[str] = "a load of up to {} times this one runs"
-    """What is told of that share, where all of them is too much."""
+    """The message that names the share of the loads that runs, where the whole load does not."""
 
     rows: Tabled
     knots: Array
@@ -118,8 +132,7 @@ class Machine(ABC, ShortRepr):
 
         places, values = extremes(both, self.rows.edges, cells=True)
         places = snapped(places, self.knots, _AT_KNOT)
-        low, high = int(values.argmin()), int(values.argmax())
-        return (float(places[low]), float(values[low])), (float(places[high]), float(values[high]))
+        return least_and_largest(places, values)
 
     def knots_over(self, periods: float, low: float | None = None) -> Array:
         """Return the knots of some periods, rad; of an open machine those of its travel.

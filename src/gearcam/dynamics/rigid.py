@@ -17,7 +17,7 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.dynamics.integrate import Integrator, Mode, Motion, MotionPiece, Switch
-from gearcam.dynamics.machine import TURN, Machine
+from gearcam.dynamics.machine import TURN, Machine, least_and_largest
 from gearcam.dynamics.motion import MachineMotion, residue
 from gearcam.dynamics.motors import Motor
 from gearcam.numeric.arrays import Array
@@ -123,8 +123,7 @@ class RigidMotion(MachineMotion):
         if len(self._cells) < 2:  # it does not start
             return (self.ends[0], 0.0), (self.ends[0], 0.0)
         places, values = extremes(self._speed_and_slope, self._cells, cells=True)
-        low, high = int(values.argmin()), int(values.argmax())
-        return (float(places[low]), float(values[low])), (float(places[high]), float(values[high]))
+        return least_and_largest(places, values)
 
     @cached_property
     def works(self) -> tuple[float, float, float]:

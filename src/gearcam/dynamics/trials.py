@@ -15,11 +15,10 @@ from typing import Final
 
 import numpy as np
 
+from gearcam.dynamics.machine import TURN
 from gearcam.dynamics.stiff import StiffPair, StiffRun, StiffState
 from gearcam.dynamics.tabled import Tabled
 from gearcam.numeric.arrays import Array
-
-_TURN: Final = 2.0 * math.pi
 
 _K, _J1, _J2, _W = 4.3e6, 0.2, 0.3, 6.0 * math.pi
 """N m/rad, kg m2, and 180 rpm in rad/s: those of a nail-making machine."""
@@ -86,7 +85,7 @@ class Trial:
 def trials() -> dict[str, Trial]:
     """Return the machines by name."""
     omega = math.sqrt(_K * (1.0 / _J1 + 1.0 / _J2))
-    free = _W * _PERIODS * _TURN / omega
+    free = _W * _PERIODS * TURN / omega
     rattle = _W * _IMPACTS * (math.pi / omega + _BACKLASH / _ENTERING)
     plain, parting = _even(0.0), _even(_BACKLASH)
     driven = _machine(lambda _, w: 60.0 * (_W - w))
@@ -96,8 +95,8 @@ def trials() -> dict[str, Trial]:
         "rattle": Trial(
             "20 impacts", parting, StiffState(0.0, _W, 0.5 * _BACKLASH, _ENTERING), rattle
         ),
-        "driven": Trial("180 rpm, 60 deg", driven, driven.resting(0.0, _W), _TURN / 6.0),
-        "slow": Trial("10 rpm, 60 deg", slow, slow.resting(0.0, _W / _SLOWER), _TURN / 6.0),
+        "driven": Trial("180 rpm, 60 deg", driven, driven.resting(0.0, _W), TURN / 6.0),
+        "slow": Trial("10 rpm, 60 deg", slow, slow.resting(0.0, _W / _SLOWER), TURN / 6.0),
     }
 
 
@@ -137,4 +136,4 @@ def _table(rows: Callable[[Array], list[Array | float]]) -> Tabled:
     def functions(x: Array) -> Array:
         return np.array([np.broadcast_to(one, x.shape) for one in rows(x)])
 
-    return Tabled(functions, np.array([0.0, _TURN]), 1e-12)
+    return Tabled(functions, np.array([0.0, TURN]), 1e-12)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -25,6 +25,7 @@ from gearcam.numeric.piecewise import with_both_sides
 from gearcam.numeric.roots import bracketed_root
 from gearcam.pictures.charts import Chart, Line, MarkedPlace, knot_marks
 from gearcam.pictures.scenes import PLACES
+from gearcam.results.study import StudyResult
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     from gearcam.dynamics.settings import DynamicsSpec
     from gearcam.mechanics.motor import MotorSpec
     from gearcam.numeric.arrays import Array
+    from gearcam.results.result import Result
 
 _FINER: Final = 1e-3
 """Tolerance of a rigid machine over that of the design, 1e-12 at least."""
@@ -566,6 +568,29 @@ class MachineRun(ShortRepr):
                 columns, "Moment of inertia at the driver", "moment of inertia, kg m2", inertia
             ),
         }
+
+    def study(self, result: Result, more: Tree) -> StudyResult:
+        """Return the study of the motion.
+
+        Parameters
+        ----------
+        result : Result
+            The design.
+        more : Tree
+            Facts of its kind, besides.
+        """
+        with result.stage("motion"):
+            columns, findings = self.columns(), self.findings()
+        return StudyResult(
+            result=result,
+            study=result.kind.studies["dynamics"],
+            file="dynamics.csv",
+            table=columns,
+            group=self.facts(columns) | more,
+            study_findings=findings,
+            drawn=partial(self.charts, columns),
+            pace=self.pace,
+        )
 
     def _run_up_chart(self, time: Array, rpm: Array) -> Chart:
         """Return the chart of a start over time."""

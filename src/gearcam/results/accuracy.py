@@ -30,8 +30,6 @@ from gearcam.results.study import Progress, silent
 REPEATS: Final = 5
 """Default number of runs of each level."""
 
-"""Files of the command ``accuracy``."""
-
 _Run = tuple[str, float]
 """Name of a method, and a level."""
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from gearcam.base.errors import DesignError, MissingExtraError, Problem
@@ -142,16 +141,4 @@ def study_dynamics(result: GearPairResult, progress: Progress) -> StudyResult:
     """
     run = motion_of(result, progress)
     progress("motion", 1, 2)
-    with result.stage("motion"):
-        columns = run.columns()
-        findings = run.findings()
-    return StudyResult(
-        result=result,
-        study=result.kind.studies["dynamics"],
-        file="dynamics.csv",
-        table=columns,
-        group=run.facts(columns),
-        study_findings=findings,
-        drawn=partial(run.charts, columns),
-        pace=run.pace,
-    )
+    return run.study(result, {})

@@ -15,6 +15,7 @@ from gearcam.base.findings import Finding, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import ARCSEC, RPM
 from gearcam.dynamics.checks import VibratingTeeth
+from gearcam.dynamics.machine import TURN, least_and_largest
 from gearcam.dynamics.mesh_stiffness import Smooth, backlash_angle, mesh_stiffness
 from gearcam.dynamics.motion import MachineMotion
 from gearcam.dynamics.settings import COAST as COASTING
@@ -53,8 +54,6 @@ _JUMPS: Final = 0.05
 
 _NARROW: Final = 1e-6
 """Width, over the last angle, to which the peaks of a vibration are narrowed."""
-
-_TURN: Final = 2.0 * math.pi
 
 _LINES: Final = 4096
 """Points in time of a turn from which the spectrum is computed."""
@@ -122,8 +121,7 @@ class ElasticMotion(MachineMotion):
 
         x = self.places
         which, places, values = summits(both, both(x), *neighbours(x), _NARROW * x[-1])
-        low, high = (max(np.flatnonzero(which == k), key=values.__getitem__) for k in (0, 1))
-        return (float(places[low]), -float(values[low])), (float(places[high]), float(values[high]))
+        return least_and_largest(places, np.where(which == 0, -values, values))
 
     @cached_property
     def works(self) -> tuple[float, float, float]:
@@ -372,7 +370,7 @@ class ElasticRun(PairRun):
     def facts(self, columns: Any) -> Tree:
         """Return the facts of the study."""
         run, (lag, speed) = self.motion.run, self._runs[0].difference(self._runs[1])
-        natural = self.pair.frequency(self.pair.places) / _TURN
+        natural = self.pair.frequency(self.pair.places) / TURN
         behind, ahead = self.largest(lambda phi: np.outer([1.0, -1.0], self.motion.states(phi)[2]))
         arcs = self.motion.lost_contact
         given = self._settings.stiffness is not None
@@ -461,8 +459,8 @@ class ElasticRun(PairRun):
         found = 2.0 * np.abs(np.fft.rfft(lag)) / count
         hz = np.arange(len(found)) / motion.lasts
         kept = slice(1, count // 4)
-        natural = float(self.pair.frequency(self.pair.places).mean()) / _TURN
-        teeth = self.result.pair.teeth[0] * self.machine.period / _TURN / motion.lasts
+        natural = float(self.pair.frequency(self.pair.places).mean()) / TURN
+        teeth = self.result.pair.teeth[0] * self.machine.period / TURN / motion.lasts
         return Chart(
             title="Spectrum of the lag over a turn",
             x="frequency, Hz",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -117,17 +116,5 @@ def study_dynamics(result: MechanismResult, progress: Progress) -> StudyResult:
         symbol=result.driver[0],
     )
     progress("motion", 1, 2)
-    with result.stage("motion"):
-        columns = run.columns()
-        findings = run.findings()
-    facts = run.facts(columns) | {"assumptions": Fact("no friction", "assumed", shown=True)}
-    return StudyResult(
-        result=result,
-        study=result.kind.studies["dynamics"],
-        file="dynamics.csv",
-        table=columns,
-        group=facts,
-        study_findings=findings,
-        drawn=partial(run.charts, columns),
-        pace=run.pace,
-    )
+    assumed = Fact("no friction", "assumed", shown=True)
+    return run.study(result, {"assumptions": assumed})
