@@ -114,6 +114,8 @@ def test_a_bad_file_is_told_and_the_last_good_page_stays(page: Chrome, file: Pat
 def test_a_slider_is_followed_coarsely_and_then_exactly(page: Chrome, file: Path) -> None:
     before = file.read_text()
     one = slider(page, "law.ratios[1]")
+    drawn = 'return document.querySelector("#charts .plot").getAttribute("aria-label")'
+    chart = page.execute_script(drawn)
     page.execute_script(
         "for (const value of [0.41, 0.42, 0.43]) { arguments[0].value = value;"
         " arguments[0].dispatchEvent(new Event('input')); }",
@@ -121,6 +123,8 @@ def test_a_slider_is_followed_coarsely_and_then_exactly(page: Chrome, file: Path
     )
     until(lambda: shown(page))
     assert shown(page)[0]["draft"]
+    until(lambda: page.execute_script(drawn) != chart)
+    assert all(one["draft"] for one in shown(page))
     page.execute_script("arguments[0].dispatchEvent(new Event('change'))", one)
     until(lambda: not shown(page)[-1]["draft"])
     # the cosine of two phases closes where both ratios make 2

@@ -43,7 +43,7 @@ def document(variants: Sequence[Variant], title: str) -> dict[str, Any]:
         "variants": variants,
         "made": made,
         "drawn": [made[k].label for k, _ in drawn],
-        "verdicts": {one.label: verdict(one.result) for one in made},
+        "verdicts": {one.label: verdict(one.result, one.result.findings) for one in made},
         "first": rows(variants),
         "every": rows(variants, every=True),
     }

@@ -7,7 +7,7 @@ from abc import abstractmethod
 from bisect import bisect_right
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 
 import numpy as np
 
@@ -31,7 +31,9 @@ if TYPE_CHECKING:
     from trimesh import Trimesh
 
     from gearcam.base.adjustments import Changes
+    from gearcam.base.facts import Tree
     from gearcam.mechanics.driver_axis import DriverAxis
+    from gearcam.results.parts import Estimates
     from gearcam.spatial.loaded import RollerTouch
 
 
@@ -47,6 +49,12 @@ SAGITTA: Final = 0.01
 ROUND: Final = 4
 """Chords of the blank for each position of a roller that cuts a solid: the error of its volume is
 that of the walls then."""
+
+_COARSE: Final = math.radians(4.0)
+"""Least steps of the driver in a draft: the solid's volume is good to a thousandth."""
+
+_FEW: Final = 3
+"""Largest number of places along the roller in the solid of a draft."""
 
 ORDERS: Final = (("velocity", 1, ""), ("acceleration", 2, "2"), ("jerk", 3, "3"))
 """Derivatives of a motion: name, order, and this as the end of a unit."""
@@ -75,6 +83,8 @@ class GriddedCam(LoadedCam, Result):
     """Largest number of triangles that a solid is made from: ten seconds, and a gigabyte."""
     roller_key: ClassVar[str]
     """Key of the radius of the roller."""
+    cutter: ClassVar[str]
+    """What cuts a solid that is carved, in words."""
 
     @cached_property
     def touches(self) -> tuple[RollerTouch, ...]:
@@ -155,6 +165,20 @@ class GriddedCam(LoadedCam, Result):
     @abstractmethod
     def chord_error(self) -> float:
         """Largest distance of the walls from the mesh, mm; of a carved one its scallops."""
+
+    def coarse(self) -> Self:
+        """Return the cam with a solid and charts of larger steps (see `Staged`)."""
+        output = self.design.output
+        output = replace(
+            output,
+            motion_step=max(output.motion_step, _COARSE),
+            wall_step=max(output.wall_step, _COARSE),
+            wall_points=min(output.wall_points, _FEW),
+        )
+        known = {name: getattr(self, name) for name in self.before_studies}
+        result = type(self)(replace(self.design, output=output, examined=True), self.tolerances)
+        vars(result).update(known)
+        return result
 
     @abstractmethod
     def solid_of(self, steps: int, places: int) -> Mesh:
@@ -323,12 +347,34 @@ class GriddedCam(LoadedCam, Result):
         )
 
     @cached_property
-    def volume(self) -> tuple[float, float]:
-        """Volume of the mesh, mm^3, and its error, from the volume of a mesh of half the steps."""
+    def volume_error(self) -> float:
+        """Error of the volume of the mesh, mm^3, from the volume of a mesh of half the steps."""
         places = self.design.output.wall_points
         coarse = self.mesh_of(self.solid_steps // 2, max(2, (places + 1) // 2)).volume
-        fine = self.mesh.volume
-        return fine, abs(fine - coarse) / 3.0
+        return abs(self.mesh.volume - coarse) / 3.0
+
+    @property
+    def more_errors(self) -> Estimates:
+        """Other errors of the solid than those of walls and volume."""
+        return {}
+
+    @cached_property
+    def accuracy(self) -> Tree | None:
+        """The errors of the solid where files ask for it (see `Staged`)."""
+        if not self.solid_asked:
+            return None
+        chords = "distance of the walls from the middles of all edges of the mesh"
+        scallops = f"height of the scallops between the positions of the {self.cutter}"
+        errors = {
+            "chord_mm": (self.chord_error, scallops if self.carved else chords),
+            **self.more_errors,
+            "volume_mm3": (
+                self.volume_error,
+                "a third of the change from a mesh of half the steps",
+            ),
+        }
+        values: Tree = {name: value for name, (value, _) in errors.items()}
+        return values | {"how": {name: how for name, (_, how) in errors.items()}}
 
     @property
     def solid_asked(self) -> bool:

@@ -14,7 +14,7 @@ from gearcam.numeric.contour import Contour
 from gearcam.numeric.pose import Pose
 from gearcam.pictures.charts import Chart, Limit, Line
 from gearcam.pictures.drawings import Feature
-from gearcam.pictures.scenes import MovingBody, Scene
+from gearcam.pictures.scenes import PLACES, MovingBody, Scene
 
 if TYPE_CHECKING:
     from gearcam.kinds.gridded import GriddedCam
@@ -97,6 +97,23 @@ def spread_chart(result: GriddedCam, title: str, places: Mapping[str, float]) ->
         lines=tuple(lines),
         limits=(Limit(label="undercut", value=0.0),),
     )
+
+
+_DRAFTED: Final = 480
+"""Cam angles of a turn at which the curves of a draft are drawn: to some 0.01 mm."""
+
+
+def drawn_steps(most: int, places: int) -> int:
+    """Return at how many cam angles of a turn the curves of a scene are drawn.
+
+    Parameters
+    ----------
+    most : int
+        In a picture.
+    places : int
+        Steps of the cam angle in the scene; that of a draft has few.
+    """
+    return most if places >= PLACES else min(most, _DRAFTED)
 
 
 _TOLERANCE: Final = 1e-3

@@ -71,40 +71,12 @@ def solid_facts(result: GriddedCam) -> Tree | None:
     density = result.design.blank.density
     if not (result.solid_asked or density):
         return None
-    volume, error = result.volume
+    volume = result.mesh.volume
     return {
         "volume_mm3": volume,
-        "volume_error_mm3": error,
         "triangles": len(result.mesh.triangles),
         "mass_kg": None if density is None else Fact(1e-9 * density * volume, "mass", shown=True),
     }
-
-
-def accuracy_facts(
-    result: GriddedCam, cutter: str, more: Mapping[str, tuple[float, str]]
-) -> Tree | None:
-    """Return the errors of the solid, and how they were found, where files ask for it.
-
-    Parameters
-    ----------
-    result : GriddedCam
-        The cam.
-    cutter : str
-        What cuts a carved one.
-    more : mapping of str to (float, str)
-        Other errors, and how they were found, by name.
-    """
-    if not result.solid_asked:
-        return None
-    chords = "distance of the walls from the middles of all edges of the mesh"
-    scallops = f"height of the scallops between the positions of the {cutter}"
-    errors = {
-        "chord_mm": (result.chord_error, scallops if result.carved else chords),
-        **more,
-        "volume_mm3": (result.volume[1], "a third of the change from a mesh of half the steps"),
-    }
-    values = {name: value for name, (value, _) in errors.items()}
-    return values | {"how": {name: how for name, (_, how) in errors.items()}}
 
 
 GridPart = tuple["RollerWall", dict[str, "Array"], "RollerContact", "Mask"]

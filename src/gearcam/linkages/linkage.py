@@ -159,17 +159,19 @@ class Linkage(ShortRepr):
         Jet
             Of complex numbers for a joint. Angles are within half a turn.
         """
-        found = value(self.at(q, order), name)
-        # of what stands still the derivatives are single zeros
-        return Jet([one + np.zeros(np.shape(q)) for one in found.c[: order + 1]])
+        return _of(self.at(q, order), name, order)
 
     def real_track(self, name: str, q: Array, order: int) -> Jet:
-        """Return one quantity whose angles have no jumps (see `track`).
+        """Return one quantity whose angles have no jumps (see `real_tracks`)."""
+        return self.real_tracks([name], q, order)[0]
+
+    def real_tracks(self, names: Iterable[str], q: Array, order: int) -> list[Jet]:
+        """Return quantities whose angles have no jumps (see `track`).
 
         Parameters
         ----------
-        name : str
-            As for `track`, not a joint without a coordinate.
+        names : iterable of str
+            As for `track`, no joints without a coordinate.
         q : (n,) array, rad
             Angles of the driver.
         order : int
@@ -177,10 +179,13 @@ class Linkage(ShortRepr):
 
         Returns
         -------
-        Jet
+        list of Jet
             An angle is within half a turn at the first angle of the driver.
         """
-        found = self.track(name, q, order)
+        known = self.at(q, order)
+        return [self._without_jumps(name, q, _of(known, name, order)) for name in names]
+
+    def _without_jumps(self, name: str, q: Array, found: Jet) -> Jet:
         if not name.endswith(".angle"):
             return found
         places, angles = self._dense(name)
@@ -221,6 +226,13 @@ class Linkage(ShortRepr):
             values = np.asarray(self.track(name, places, 0).c[0])
             self._angles[name] = places, np.unwrap(values)
         return self._angles[name]
+
+
+def _of(known: Known, name: str, order: int) -> Jet:
+    """Return one quantity of a linkage that is solved."""
+    found = value(known, name)
+    # of what stands still the derivatives are single zeros
+    return Jet([one + np.zeros(known.q.shape) for one in found.c[: order + 1]])
 
 
 def in_cycle(q: Array, span: tuple[float, float]) -> tuple[Array, Array]:

@@ -7,7 +7,7 @@ member without jumps by whole turns.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final, NamedTuple
@@ -133,14 +133,33 @@ def extremes_of(track: Law, knots: Array, highest: int = HIGHEST) -> tuple[Extre
     tuple of (places, values)
         For each order roots of the next derivative, and both sides of each knot.
     """
+    return extremes_of_several(lambda q, order: [track(q, order)], knots, highest)[0]
+
+
+def extremes_of_several(
+    tracks: Callable[[Array, int], Sequence[Jet]], knots: Array, highest: int = HIGHEST
+) -> list[tuple[Extremes, ...]]:
+    """Return the extremes of several quantities, found at once (see `extremes_of`).
+
+    Parameters
+    ----------
+    tracks : callable
+        ``tracks(q, order)`` returns a Jet for each, real.
+    knots, highest
+        As of `extremes_of`.
+
+    Returns
+    -------
+    list of tuple of (places, values)
+    """
     grid = np.asarray(knots, dtype=float)
 
     def derivatives(q: Array) -> Array:
-        return np.array(track(q, highest + 1).derivatives())
+        return np.array([one.derivatives() for one in tracks(q, highest + 1)])
 
     def both(q: Array) -> Array:
         found = derivatives(q)
-        return np.stack([found[:-1], found[1:]])
+        return np.stack([found[:, :-1], found[:, 1:]]).reshape(2, -1, q.size)
 
     rough = extremes_of_each(both, grid)
     which = np.concatenate([np.full(len(one[0]), k) for k, one in enumerate(rough)])
@@ -150,14 +169,17 @@ def extremes_of(track: Law, knots: Array, highest: int = HIGHEST) -> tuple[Extre
     places = snapped(places, grid, _NEAR * np.diff(grid)[cell - 1])
     free = np.flatnonzero(~np.isin(places, grid))
     if free.size:
-        places[free], values[free] = _polished(derivatives, grid, which[free], places[free])
-    return tuple((places[which == k], values[which == k]) for k in range(highest + 1))
+        number, order = np.divmod(which[free], highest + 1)
+        places[free], values[free] = _polished(derivatives, grid, (number, order), places[free])
+    each = [(places[which == k], values[which == k]) for k in range(len(rough))]
+    return [tuple(each[k : k + highest + 1]) for k in range(0, len(each), highest + 1)]
 
 
 def _polished(
-    derivatives: Callable[[Array], Array], grid: Array, order: Ints, places: Array
+    derivatives: Callable[[Array], Array], grid: Array, which: tuple[Ints, Ints], places: Array
 ) -> Extremes:
-    """Return the extremes of given orders next to places."""
+    """Return the extremes of given quantities and orders next to places."""
+    number, order = which
     cell = np.clip(np.searchsorted(grid, places), 1, len(grid) - 1)
     reach = _ROUGH * np.diff(grid).min()
     low = np.maximum(places - reach, grid[cell - 1])
@@ -166,7 +188,7 @@ def _polished(
 
     def at(q: Array) -> tuple[Array, Array]:
         found = derivatives(q)
-        return found[order, own], found[order + 1, own]
+        return found[number, order, own], found[number, order + 1, own]
 
     (_, before), (_, after) = at(low), at(high)
     crossed = opposite(before, after)
@@ -176,6 +198,30 @@ def _polished(
     found = np.where(crossed, low - before / slope, places)
     values, rest = at(found)
     return np.clip(found - rest / slope, low, high), values
+
+
+@dataclass(frozen=True, eq=False)
+class TracksTogether(ShortRepr):
+    """Quantities of which the extremes are found at once, when the first ones are asked for.
+
+    Parameters
+    ----------
+    tracks : callable
+        ``tracks(q, order)`` returns a Jet for each.
+    knots : (k,) array, rad
+        Between them they are smooth.
+    highest : int
+        Highest derivative of which extremes are wanted.
+    """
+
+    tracks: Callable[[Array, int], Sequence[Jet]]
+    knots: Array
+    highest: int
+
+    @cached_property
+    def extremes(self) -> list[tuple[Extremes, ...]]:
+        """Extremes of each (see `extremes_of_several`)."""
+        return extremes_of_several(self.tracks, self.knots, self.highest)
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,12 +238,15 @@ class TrackMeasures(ShortRepr):
         Whether the motion repeats after the last knot; the value may have risen by then.
     highest : int
         Highest derivative of which extremes are wanted.
+    among : (TracksTogether, int), optional
+        Others of which the extremes are found with its own, and its place among them.
     """
 
     track: Law
     knots: Array
     closed: bool = True
     highest: int = HIGHEST
+    among: tuple[TracksTogether, int] | None = None
 
     @property
     def span(self) -> tuple[float, float]:
@@ -207,7 +256,11 @@ class TrackMeasures(ShortRepr):
     @cached_property
     def extremes(self) -> tuple[Extremes, ...]:
         """Extremes of each order (see `extremes_of`); of what stands still 0 from order 1 on."""
-        first, *others = extremes_of(self.track, self.knots, self.highest)
+        if self.among is None:
+            first, *others = extremes_of(self.track, self.knots, self.highest)
+        else:
+            together, number = self.among
+            first, *others = together.extremes[number]
         if np.ptp(first[1]) > STILL:
             return (first, *others)
         return (first, *((places, np.zeros_like(values)) for places, values in others))

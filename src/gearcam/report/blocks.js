@@ -8,13 +8,16 @@ function block(name, html) {
   home.querySelectorAll("details").forEach((one, k) => (one.open = open[k] ?? false));
 }
 
-// Put another document or a draft, which lacks charts, contacts and some blocks, in the place of the
-// document shown, and return both together: what is missing stays unchanged.
+// Put another document or a draft, which lacks most charts, contacts and some blocks, in the place of
+// the document shown, and return both together: what is missing stays unchanged.
 function replaced(shown, next) {
   const blocks = { ...shown.blocks, ...next.blocks };
   for (const [name, html] of Object.entries(blocks)) {
     if (html !== shown.blocks[name]) block(name, html);
   }
   document.title = next.title;
-  return { ...shown, ...next, blocks };
+  const { leading = [], ...others } = next;
+  const drafted = new Map(leading.map((one) => [one.name, one]));
+  const charts = shown.charts.map((one) => drafted.get(one.name) ?? one);
+  return { ...shown, charts, ...others, blocks };
 }

@@ -118,6 +118,11 @@ class ChartView {
     }
   }
 
+  // Replace this chart by another one when it is in sight.
+  expect(chart) {
+    if (chart !== (this.waiting ?? this.chart)) this.waiting = chart;
+  }
+
   // Replace this chart by another one.
   show(chart) {
     const shape = (one) => [one.log, one.equal, ...one.lines.map((line) => line.dots)].join();
@@ -351,7 +356,7 @@ class Charts {
   show(charts) {
     const names = (list) => list.map((one) => one.name).join();
     if (names(charts) !== names(this.views.map((view) => view.chart))) this.rebuild(charts);
-    else this.views.forEach((view, k) => (view.waiting = charts[k]));
+    else this.views.forEach((view, k) => view.expect(charts[k]));
     this.wake();
   }
 

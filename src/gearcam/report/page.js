@@ -359,7 +359,7 @@ function present(whole) {
   element("place").max = scene.places.length - 1;
   page.place = Math.min(scene.places.at(-1), Math.max(scene.places[0], page.place));
   draw();
-  if (whole) charts.show(page.shown.charts);
+  charts.show(page.shown.charts);
 }
 
 window.gearcam = {

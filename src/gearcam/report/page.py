@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from jinja2 import Environment
 
     from gearcam.base.facts import Facts
+    from gearcam.base.findings import Finding
     from gearcam.pictures.charts import Chart
     from gearcam.results.result import Result
 
@@ -34,6 +35,9 @@ BLOCKS: Final = ("verdict", "remedies", "findings", "pictures", "files", "facts"
 
 DRAFTED: Final = ("verdict", "remedies", "findings", "facts")
 """Blocks that are updated while a slider is dragged."""
+
+LEADING: Final = 3
+"""Number of charts that are updated then: those in sight."""
 
 DRAFT_PLACES: Final = 120
 """Steps of the driver in the scene of a draft: 3 degrees of a turn, interpolated linearly."""
@@ -193,22 +197,62 @@ def document(
 
 
 def draft(result: Result) -> dict[str, Any]:
-    """Return the part of a document that follows a slider: without charts, remedies and files."""
+    """Return the part of a document that follows a slider.
+
+    Parameters
+    ----------
+    result : Result
+        Of any kind of design.
+
+    Returns
+    -------
+    dict
+        As `document` does, with ``leading``, the first charts, instead of ``charts``; without
+        studies, remedies, estimated errors and values that help.
+    """
     result = result.plain
     scene = result.scene(DRAFT_PLACES)
+    driver = scene.driver if scene else ""
     return {
         "title": result.design.name,
         "kind": result.design.kind,
         "scene": scene_data(scene) if scene else None,
-        "blocks": blocks(result, names=DRAFTED, seek=False),
+        "leading": [chart_data(name, one, driver) for name, one in result.leading(LEADING)],
+        "blocks": _rendered(
+            DRAFTED,
+            result,
+            result.facts_without_accuracy,
+            result.findings_without_hints,
+            remedies=Remedies(),
+        ),
     }
+
+
+def with_draft(whole: Mapping[str, Any], part: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a document with what a draft has anew.
+
+    Parameters
+    ----------
+    whole : mapping
+        See `document`.
+    part : mapping
+        See `draft`.
+
+    Returns
+    -------
+    dict
+        A document.
+    """
+    anew = {one["name"]: one for one in part["leading"]}
+    others = {key: value for key, value in part.items() if key != "leading"}
+    charts = [anew.get(one["name"], one) for one in whole["charts"]]
+    return {**whole, **others, "charts": charts, "blocks": {**whole["blocks"], **part["blocks"]}}
 
 
 def blocks(
     result: Result,
     measured: Mapping[str, Any] = MappingProxyType({}),
     *,
-    names: Sequence[str] = BLOCKS,
     seek: bool = True,
 ) -> dict[str, str]:
     """Return blocks of HTML by name.
@@ -219,8 +263,6 @@ def blocks(
         Of any kind of design.
     measured : mapping
         Facts measured on its files, by group.
-    names : sequence of str
-        Names from `BLOCKS`.
     seek : bool
         Whether to search for remedies of errors, which takes some seconds.
 
@@ -229,15 +271,28 @@ def blocks(
     dict of str to str
     """
     facts = result.facts.with_groups(measured)
+    return _rendered(
+        BLOCKS,
+        result,
+        facts,
+        result.findings,
+        remedies=remedies(result) if seek else Remedies(),
+        files={name: size_of(size) for name, size in result.sizes.items()},
+        errors=[*_errors(result, facts)],
+        pictures=[*_pictures(result)],
+    )
+
+
+def _rendered(
+    names: Sequence[str], result: Result, facts: Facts, findings: Sequence[Finding], **more: Any
+) -> dict[str, str]:
+    """Return blocks by name, of some facts and findings of a result."""
     values = {
         "title": result.design.name,
         "facts": facts,
-        "findings": result.findings,
-        "verdict": verdict(result),
-        "remedies": remedies(result) if seek else Remedies(),
-        "files": {name: size_of(size) for name, size in result.sizes.items()},
-        "errors": [*_errors(result, facts)],
-        "pictures": [*_pictures(result)] if "pictures" in names else (),
+        "findings": findings,
+        "verdict": verdict(result, findings),
+        **more,
     }
     return {name: rendered(f"{name}.html", values) for name in names}
 
@@ -247,9 +302,9 @@ def rendered(name: str, values: Mapping[str, Any]) -> str:
     return _templates().get_template(name).render(values)
 
 
-def verdict(result: Result) -> tuple[str, str]:
-    """Return the worst severity of a result's findings, note if there are none, and the verdict."""
-    severities = {one.severity for one in result.findings}
+def verdict(result: Result, findings: Sequence[Finding]) -> tuple[str, str]:
+    """Return the worst severity of a result's `findings`, note without any, and the verdict."""
+    severities = {one.severity for one in findings}
     worst = next((one for one in _VERDICTS if one in severities), "note")
     return worst, (_VERDICTS if result.kind.cut else _OF_MOTIONS)[worst]
 

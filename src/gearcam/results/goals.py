@@ -50,7 +50,9 @@ def _no_goal(
     near = [one for one in numbers if one.startswith(f"{name}.")][:_LISTED]
     near = near or difflib.get_close_matches(name, numbers, n=_LISTED, cutoff=_LEAST)
     message = f"{show(name)} is no fact of this design"
-    if name in facts:
+    if name.startswith("accuracy."):
+        message, near = f"{show(name)} is an estimated error", []
+    elif name in facts:
         message, near = f"{show(name)} is not a number: {show(facts[name])}", []
     allowed = "a number by its name in summary.json; those of a study with output.studies"
     allowed = f"such as {', '.join(near)}" if near else allowed

@@ -11,9 +11,37 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import lru_cache
+from typing import Any, Final
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.findings import Finding
+from gearcam.base.tolerances import Tolerances
+from gearcam.results.kind import kind_of
+
+_KEPT: Final = 8
+"""Results of nested designs that are kept."""
+
+
+def nested_result(design: Any, tolerances: Tolerances) -> Any:
+    """Return the result of a nested design; while the design stays the same, so does the result.
+
+    In searches, sweeps and the live view the machine around it changes more often.
+
+    Parameters
+    ----------
+    design : Design
+        The nested design; with other rows in its CSV files it is another one.
+    tolerances : Tolerances
+        Internal accuracy.
+    """
+    return _kept(design, design.source, tolerances)
+
+
+@lru_cache(_KEPT)
+def _kept(design: Any, _source: str, tolerances: Tolerances) -> Any:
+    """Return a result; findings have the source of a design, in which equal designs differ."""
+    return kind_of(design).result(design, tolerances)
 
 
 @contextmanager

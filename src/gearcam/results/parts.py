@@ -15,6 +15,7 @@ from gearcam.results.result import Result
 if TYPE_CHECKING:
     from trimesh import Trimesh
 
+    from gearcam.base.facts import Tree
     from gearcam.export.dxf import DxfStyle
     from gearcam.numeric.mesh import Mesh
     from gearcam.numeric.pose import Pose, SpacePose
@@ -30,6 +31,9 @@ Estimates = Mapping[str, tuple[float, str]]
 
 _STEP_PART: Final = 2e-3
 """Tolerance of STEP surfaces over that of the outlines: their volumes are then good to 1e-6."""
+
+COARSE: Final = 0.02
+"""Chord tolerance of a draft, mm: a fifth of a pixel at 10 pixels per mm."""
 
 CHORDS: Final = ("outlines, between their points", ["chord_mm"])
 """The chord error among the `main_errors`."""
@@ -68,6 +72,10 @@ class PartsResult(Result):
         result = type(self)(replace(self.design, output=output, examined=True), self.tolerances)
         vars(result).update(known)
         return result
+
+    def coarse(self) -> Self:
+        """Return the result with outlines for the eye (see `Staged`)."""
+        return self.with_chords(COARSE)
 
     @cached_property
     @abstractmethod
@@ -181,9 +189,9 @@ class PartsResult(Result):
             yield from [("area", areas)] if areas else []
             yield "volume (mass in the same proportion)", ["volume_mm3"]
 
-    @property
-    def accuracy(self) -> dict[str, Any]:
-        """The error estimates as facts, with ``how`` for each."""
+    @cached_property
+    def accuracy(self) -> Tree:
+        """The estimated errors as facts (see `Staged`)."""
         rows = {**self.error_rows, "chord_mm": (self.chord_error, _CHORD_HOW)}
         how = {name: words for name, (_, words) in rows.items()}
         return {**{name: float(value) for name, (value, _) in rows.items()}, "how": how}

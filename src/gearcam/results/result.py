@@ -7,9 +7,10 @@ that the requested files need are imported.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 
@@ -48,6 +49,7 @@ _OF_STUDIES: Final = (
     "_studied",
     "_running",
     "_drawn",
+    "facts_without_accuracy",
     "design_facts",
     "facts",
     "findings",
@@ -203,9 +205,15 @@ class Result(Staged):
     @cached_property
     def facts(self) -> Facts:
         """All computed quantities by dotted names (see docs/summary.md)."""
-        return self.design_facts.with_groups(
-            {one.study.key: one.group for one in self.studies.values()}
-        )
+        return self._with_studies(self.design_facts)
+
+    def _with_studies(self, facts: Facts) -> Facts:
+        return facts.with_groups({one.study.key: one.group for one in self.studies.values()})
+
+    @cached_property
+    def at_rest(self) -> Scene | None:
+        """The parts at the first place of the driver, as `scene` has them, without studies."""
+        return self.plain.scene(1)
 
     def standing(
         self,
@@ -235,12 +243,12 @@ class Result(Staged):
     def record(self) -> dict[str, float | str]:
         """Return the result as one flat row of a table: plain numbers and texts, no lists, no None.
 
-        Keys are ``name``, ``kind``, the dotted names of all facts, and what the checks found:
-        ``findings.errors``, ``.warnings``, ``.notes``, counts, and ``findings.codes``. A range has
-        two keys, ``pair.ratio.min`` and ``pair.ratio.max``; a list of lengths or places one for
-        each, counted from 0, such as ``gears.0.size_mm.2``; a list of whole numbers is a text.
-        Results of other laws or kinds may have other keys. Raises `InfeasibleError` if the design
-        cannot be made.
+        Keys are ``name``, ``kind``, the dotted names of all facts but those of ``accuracy``, which
+        take long, and what the checks found: ``findings.errors``, ``.warnings``, ``.notes``,
+        counts, and ``findings.codes``. A range has two keys, ``pair.ratio.min`` and
+        ``pair.ratio.max``; a list of lengths or places one for each, counted from 0, such as
+        ``gears.0.size_mm.2``; a list of whole numbers is a text. Results of other laws or kinds may
+        have other keys. Raises `InfeasibleError` if the design cannot be made.
 
         Examples
         --------
@@ -251,7 +259,8 @@ class Result(Staged):
         >>> [round(row["pair.ratio.max"], 3) for row in rows]
         [1.222, 1.857]
         """
-        row = {"name": self.design.name, "kind": self.design.kind, **self.facts.record()}
+        facts = self._with_studies(self.facts_without_accuracy)
+        row = {"name": self.design.name, "kind": self.design.kind, **facts.record()}
         findings = self.findings_without_hints
         for word in ("error", "warning", "note"):
             row[f"findings.{word}s"] = sum(one.severity == word for one in findings)
@@ -295,7 +304,16 @@ class Result(Staged):
     def charts(self) -> tuple[str, ...]:
         """Names that `chart` and `plot` accept; `InfeasibleError` if it cannot be made."""
         names = (name for name in self.kind.charts if self._chart(name) is not None)
-        return (*names, *self._study_charts)
+        return (*self._in_order(names), *self._study_charts)
+
+    def leading(self, count: int) -> Iterator[tuple[str, Chart]]:
+        """Yield names and charts of the first `count` charts, without those of studies."""
+        drawn = ((name, self._chart(name)) for name in self._in_order(self.kind.charts))
+        yield from islice(((name, one) for name, one in drawn if one is not None), count)
+
+    def _in_order(self, names: Iterable[str]) -> Sequence[str]:
+        """Return names of charts, those first that say most."""
+        return tuple(names)
 
     def _chart(self, name: str) -> Chart | None:
         """Return a chart of the kind, drawn once; None where it would say nothing."""

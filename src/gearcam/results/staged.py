@@ -10,7 +10,7 @@ from functools import cached_property
 from typing import Any, Self
 
 from gearcam.base.display import NotebookView, cut
-from gearcam.base.facts import Facts
+from gearcam.base.facts import Facts, Tree
 from gearcam.base.findings import Finding
 from gearcam.base.tolerances import DEFAULT, Tolerances
 from gearcam.designs.design import hash_of
@@ -44,6 +44,14 @@ class Staged(NotebookView):
 
     def with_chords(self, tolerance: float) -> Self:  # noqa: ARG002
         """Return the result with another chord `tolerance`, mm; the same without outlines."""
+        return self
+
+    def coarse(self) -> Self:
+        """Return the result for a draft: outlines and solids are only looked at.
+
+        It keeps what does not depend on how fine these are. `InfeasibleError` if the design cannot
+        be made.
+        """
         return self
 
     @property
@@ -83,10 +91,24 @@ class Staged(NotebookView):
         return hash_of(self.design)
 
     @cached_property
-    def design_facts(self) -> Facts:
-        """The facts without those of studies."""
+    def accuracy(self) -> Tree | None:
+        """The estimated errors as facts, with ``how`` for each; None without estimates."""
+        return None
+
+    @cached_property
+    def facts_without_accuracy(self) -> Facts:
+        """The facts without those of studies and without estimated errors.
+
+        For searches, rows of tables and drafts, which do not show how accurate they are: estimates
+        take as long as half of the checks.
+        """
         tables = [{"note": note} for note in self.rows.notes]
         return self.kind.facts(self).with_groups({"tables": tables})
+
+    @cached_property
+    def design_facts(self) -> Facts:
+        """The facts without those of studies."""
+        return self.facts_without_accuracy.with_groups({"accuracy": self.accuracy})
 
     @property
     def main_errors(self) -> Sequence[tuple[str, Sequence[str]]]:

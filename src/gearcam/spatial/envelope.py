@@ -150,7 +150,7 @@ class RollerContact(ShortRepr):
         """The direction of u across the axis, and m . e; beyond 1 nothing is touched."""
         (a, _, _), (v, _) = self._a, self._v
         across = self._u - dot(self._u, a)[..., None] * a
-        size = np.linalg.norm(across, axis=-1)
+        size = np.sqrt(dot(across, across))
         return across / size[..., None], math.sin(self.half_angle) * dot(a, v) / size
 
     @property
@@ -182,7 +182,8 @@ class RollerContact(ShortRepr):
         """Pressure angle, (n, k), rad: between the normal and how the centre can move."""
         way = self.axis.way[:, None, :] + self.x[..., None] * self.axis.swing[:, None, :]
         along = np.abs(dot(self.normals, way))
-        return np.arctan2(np.linalg.norm(cross(self.normals, way), axis=-1), along)
+        beside = cross(self.normals, way)
+        return np.arctan2(np.sqrt(dot(beside, beside)), along)
 
     @cached_property
     def tangents(self) -> Array:
@@ -213,6 +214,24 @@ class RollerContact(ShortRepr):
         along = cosine * (dot(a, v) - r * turned) + sine * dot(m, v)
         around = dot(self.tangents, v) - r * by_theta / by_psi
         return self.side * (around / cosine + along * r * by_x / by_psi)
+
+    @property
+    def vanishing(self) -> Array:
+        """Radii, (n, k), mm, of cylinders for which the spread vanishes; infinite without one.
+
+        The direction m does not depend on the radius of a cylinder, and the spread becomes
+        ``(t.v + c*r - (m.a')^2/(t.v)*r^2)*side``, c what is left of the derivatives. At r = 0 it is
+        positive, and the factor of r^2 is not: one root is positive.
+        """
+        a, (v, v1), m = self._a[0], self._v, self.radial
+        by_psi, by_x = self._slopes
+        tail = dot(m, v1) - 2.0 * by_x * dot(a, v)
+        constant, linear = np.abs(by_psi), -self.side * tail / by_psi
+        square = by_x**2 / constant
+        root = np.sqrt(linear**2 + 4.0 * constant * square)
+        with np.errstate(divide="ignore", invalid="ignore"):  # the forms in which nothing cancels
+            falling, rising = 2.0 * constant / (root - linear), (root + linear) / (2.0 * square)
+        return np.where(linear < 0.0, falling, np.where(root + linear > 0.0, rising, math.inf))
 
     @cached_property
     def stretch(self) -> Array:

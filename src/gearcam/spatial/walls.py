@@ -32,6 +32,12 @@ if TYPE_CHECKING:
 ROOT: Final = 1e-15
 """Width of the bracket of a place or a radius, over the size of the cam."""
 
+_FALLS: Final = 60
+"""Largest number of places that are looked at for the largest cone; five are many."""
+
+_STEADY: Final = 1e-8
+"""Fall of the largest cone, as a share, after which it falls by rounding: by its square."""
+
 _SOUGHT: Final = 0.999
 """Share of the largest radius that is looked for, at and above which none was found."""
 
@@ -205,7 +211,7 @@ class RollerWall(ABC, ShortRepr):
 
         Infinite if there is none up to the `widest`. Only places that are on the cam now count.
         """
-        spot = self.least(self.critical)
+        spot = self._largest_cone if self.cam.roller.half_angle else self.least(self._critical)
         return spot if spot.value < _SOUGHT * self.cam.widest else replace(spot, value=math.inf)
 
     @property
@@ -213,24 +219,41 @@ class RollerWall(ABC, ShortRepr):
         """Largest radius of the roller itself, mm; infinite or below 0 if there is none."""
         return self.largest_roller.value - 0.5 * self.cam.clearance
 
-    def critical(self, contact: RollerContact) -> Array:
-        """Return the radii, mm, where a roller is `at`, with which the spread of points vanishes.
+    def _critical(self, contact: RollerContact) -> Array:
+        """Return radii of cylinders with which the spread of points vanishes, (n, k), mm."""
+        return np.minimum(contact.vanishing, self.cam.widest)
 
-        Parameters
-        ----------
-        contact : RollerContact
-            Where the tool touches the wall.
+    @property
+    def _largest_cone(self) -> Spot:
+        """The largest radius of a cone, mm, where it is `at`; that searched for if there is none.
 
-        Returns
-        -------
-        (n, k) array
-            At most the `widest`.
+        The radius with which the spread vanishes at one place is too large for those where it is
+        negative then. The radius of the worst of them is smaller, and so on down to that of the
+        worst place of all: as fast as Newton's method, and from any place.
         """
+        spot, found = self.spread, math.inf
+        for _ in range(_FALLS):
+            radius = self._radius_at(spot) if math.isfinite(spot.value) else self.cam.widest
+            if radius < found:
+                best = replace(spot, value=radius)
+            if radius >= (1.0 - _STEADY) * found:
+                break
+            found = radius
+            spot = self.least(lambda contact, radius=found: self._with(contact, radius).spread)
+        return best
+
+    def _with(self, contact: RollerContact, radius: Array | float) -> RollerContact:
+        """Return the contact of a tool of another radius, mm, where it is `at`."""
+        shape = self.cam.roller
+        own = radius + (contact.x - shape.at) * math.tan(shape.half_angle)
+        return replace(contact, radius=np.maximum(own, 0.0))
+
+    def _radius_at(self, spot: Spot) -> float:
+        """Return the radius of a tool, mm, where it is `at`, with which the spread vanishes."""
         shape, widest = self.cam.roller, self.cam.widest
-        narrower = (shape.at - contact.x) * math.tan(shape.half_angle)
-
-        def spread(radius: Array) -> Array:
-            return replace(contact, radius=radius - narrower).spread
-
-        least = np.maximum(narrower, 0.0)
-        return bracketed_root(spread, least, np.full(least.shape, widest), ROOT * widest)
+        contact = self.contact(np.array([spot.theta]), np.array([[spot.x]]))
+        least = np.maximum((shape.at - contact.x) * math.tan(shape.half_angle), 0.0)
+        found = bracketed_root(
+            lambda radius: self._with(contact, radius).spread, least, widest, ROOT * widest
+        )
+        return float(found[0, 0])

@@ -17,6 +17,7 @@ from gearcam.base.errors import DesignError, WriteError
 from gearcam.designs.design import loads
 from gearcam.designs.reader import content_of, decoded
 from gearcam.export.write import rewrite
+from gearcam.report.page import with_draft
 from gearcam.view import work
 from gearcam.view.numbers import numbers, replaced
 
@@ -126,8 +127,7 @@ class Session:
             if turn != self._turn or self._whole == turn or reply["error"] or before is None:
                 return
             draft = reply["document"]
-            blocks = {**before["blocks"], **draft["blocks"]}
-            self._set(document={**before, **draft, "blocks": blocks}, news=draft, error="")
+            self._set(document=with_draft(before, draft), news=draft, error="")
 
     def _take(self, turn: int, content: bytes | None, done: Future[work.Reply]) -> None:
         reply = _result(done, self.file)

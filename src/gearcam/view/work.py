@@ -24,9 +24,6 @@ from gearcam.view.numbers import Values, equals, numbers, replaced, sliders, tid
 
 Reply = dict[str, Any]
 
-COARSE: Final = 0.02
-"""Chord tolerance of a draft, mm: a fifth of a pixel at 10 pixels per mm."""
-
 _CHORDS: Final = "output.chord_tolerance_mm"
 
 _DONE: Final = "updated"
@@ -211,7 +208,7 @@ def _items(near: Mapping[str, Any]) -> dict[str, Any]:
 def _draft(design: Design) -> Reply:
     result = build(design)
     try:
-        return draft(result.with_chords(COARSE))
+        return draft(result.coarse())
     except InfeasibleError as error:
         if _CHORDS not in str(error):
             raise

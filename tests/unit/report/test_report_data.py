@@ -214,7 +214,7 @@ WEIGHED = ["area", "volume (mass in the same proportion)"]
 )
 def test_accuracy_is_one_number_for_each_thing_that_people_act_on(name, labels):
     result, _ = made(name)
-    html = blocks(result, names=["accuracy"])["accuracy"]
+    html = blocks(result)["accuracy"]
     rows = dict(re.findall(r'<th scope="row">(.+?)</th><td class="number">(.+?)</td>', html))
     assert list(rows) == labels
     chord = result.facts["accuracy.chord_mm"]
@@ -225,7 +225,7 @@ def test_of_several_walls_the_largest_error_is_shown():
     result, _ = made("groove_cam")
     result = gearcam.build(result.design.with_({"blank.density_kg_m3": 7850}))
     areas = [result.facts[f"accuracy.{wall}_area_mm2"] for wall in ("inner", "outer")]
-    html = blocks(result, names=["accuracy"])["accuracy"]
+    html = blocks(result)["accuracy"]
     assert f'>area</th><td class="number">{max(areas):.2g} mm2<' in html
 
 

@@ -45,9 +45,10 @@ def test_its_values_are_those_of_the_facts() -> None:
     assert row["pair.teeth"] == ", ".join(map(str, facts["pair.teeth"]))
     assert row["gears.1.teeth"] == facts["pair.teeth"][1]
     assert row["gears.0.openings.0.kind"] == "bore"
-    names = {one.name for one in facts.quantities() if not one.name.startswith("accuracy.how")}
+    names = {one.name for one in facts.quantities() if not one.name.startswith("accuracy.")}
     kept = {name for name in names if any(key == name or key.startswith(name) for key in row)}
     assert kept == names
+    assert not any(key.startswith("accuracy") for key in row)
 
 
 def test_it_says_what_the_checks_found() -> None:

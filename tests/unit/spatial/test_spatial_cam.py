@@ -51,7 +51,7 @@ def test_the_largest_roller_is_smaller_than_the_developed_plane_allows(
 ) -> None:
     """In space: roots of w^4 - r*x*s''*w - r^2*s'^2, w^2 = x^2 + s'^2, in 30 digits."""
     cam = reference()
-    found = min(wall.least(wall.critical, (x, x)).value for wall in cam.walls)
+    found = min(wall.least(lambda one: one.vanishing, (x, x)).value for wall in cam.walls)
     assert found == pytest.approx(in_space, abs=1e-10)
     assert largest_in_plane(cam, x) == pytest.approx(in_plane, abs=1e-8)
 

@@ -128,7 +128,7 @@ def test_a_fault_of_the_program_is_told(view: Shown, monkeypatch: pytest.MonkeyP
     assert "this is a bug in gearcam" in view.refresh().error
 
 
-def test_a_draft_comes_before_the_whole_and_leaves_charts_as_they_are(
+def test_a_draft_comes_before_the_whole_and_leaves_the_others_as_they_are(
     view: Shown, file: Path
 ) -> None:
     before, told = view.session.state, len(view.states)
@@ -142,7 +142,11 @@ def test_a_draft_comes_before_the_whole_and_leaves_charts_as_they_are(
         assert draft.news is not None
         assert "charts" not in draft.news
         assert draft.document is not None
-        assert draft.document["charts"] is before.document["charts"]
+        drawn = draft.document["charts"]
+        assert [one["name"] for one in drawn] == [one["name"] for one in before.document["charts"]]
+        assert drawn[:3] == draft.news["leading"] != before.document["charts"][:3]
+        assert drawn[3:] == before.document["charts"][3:]
+        assert "leading" not in draft.document
         assert draft.document["blocks"].keys() == before.document["blocks"].keys()
         assert draft.made == before.made
     assert after.made == hashlib.sha256(file.read_bytes()).hexdigest()

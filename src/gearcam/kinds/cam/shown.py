@@ -33,7 +33,6 @@ def facts(result: CamResult) -> Facts:
         "cam": _cam(result),
         "part": _part(result) or None,
         "solution": _solution(result),
-        "accuracy": result.accuracy,
     }
     headline = ("motion.total_lift", f"cam.{result.form.leading}")
     return Facts(tree, headline, f"{design.cam.form} cam for {design.follower.named}")

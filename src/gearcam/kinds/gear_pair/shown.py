@@ -36,7 +36,6 @@ def facts(result: GearPairResult) -> Facts:
         "mesh": _mesh(result),
         "kerf_mm": kerf or None,
         "gears": [_gear(result, gear) for gear in result.gears],
-        "accuracy": result.accuracy,
         "steps": {"count": len(leads), "moved_mm": list(leads)} if len(leads) > 1 else None,
     }
     size = "travel_per_turn_mm" if result.pair.on_rack else "center_distance_mm"

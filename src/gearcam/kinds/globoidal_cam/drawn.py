@@ -20,6 +20,7 @@ import numpy as np
 from gearcam.base.findings import limit_of
 from gearcam.kinds.globoidal_cam.result import TURRET
 from gearcam.kinds.gridded_drawn import (
+    drawn_steps,
     filled,
     motion_chart,
     pressure_chart,
@@ -108,9 +109,17 @@ def sheet(cam: GloboidalCam) -> Feature:
     return filled(BLANK, np.array([-half, width - half, width + half, half]))
 
 
-def grooves(cam: GloboidalCam) -> tuple[Feature, ...]:
-    """Return the grooves between the windings of the rib, cut where the sheet begins and ends."""
-    upper, lower = (dict(_windings(cam, wall)) for wall in cam.walls)
+def grooves(cam: GloboidalCam, steps: int = _STEPS) -> tuple[Feature, ...]:
+    """Return the grooves between the windings of the rib, cut where the sheet begins and ends.
+
+    Parameters
+    ----------
+    cam : GloboidalCam
+        The cam.
+    steps : int
+        Number of cam angles in a turn.
+    """
+    upper, lower = (dict(_windings(cam, wall, steps)) for wall in cam.walls)
     half = half_height(cam)
     found = []
     for turn in sorted(upper.keys() & lower.keys()):
@@ -121,9 +130,15 @@ def grooves(cam: GloboidalCam) -> tuple[Feature, ...]:
     return tuple(found)
 
 
-def paths(cam: GloboidalCam) -> tuple[Feature, ...]:
-    """Return the path of the rollers' axes between the faces."""
-    theta, limit = np.linspace(0.0, TURN, _STEPS + 1), half_height(cam)
+def paths(cam: GloboidalCam, steps: int = _STEPS) -> tuple[Feature, ...]:
+    """Return the path of the rollers' axes between the faces.
+
+    Parameters
+    ----------
+    cam, steps
+        As of `grooves`.
+    """
+    theta, limit = np.linspace(0.0, TURN, steps + 1), half_height(cam)
     once = center(cam, theta)
     found = []
     for k in range(-_around(cam), _around(cam) + 1):
@@ -148,11 +163,11 @@ def _around(cam: GloboidalCam) -> int:
     return math.ceil(half_height(cam) / (cam.middle * cam.pitch))
 
 
-def _windings(cam: GloboidalCam, wall: GloboidalWall) -> Iterator[tuple[int, Plane]]:
+def _windings(cam: GloboidalCam, wall: GloboidalWall, steps: int) -> Iterator[tuple[int, Plane]]:
     """Yield the edge of a wall on the sheet, from left to right, by the number of its winding."""
     start, end = cam.span
     first, last = math.floor(start / TURN) - 1, math.ceil(end / TURN) + 1
-    theta = np.linspace(first * TURN, last * TURN, (last - first) * _STEPS + 1)
+    theta = np.linspace(first * TURN, last * TURN, (last - first) * steps + 1)
     points = wall.contact(theta, wall.place(theta, cam.middle)[:, None]).points
     _, direction, ahead = polar(cam, points, theta)[:, 0].T
     # the azimuth falls with the cam angle, and is nearest to minus this
@@ -187,7 +202,8 @@ def scene(result: GloboidalCamResult, places: int = PLACES) -> Scene:
     Scene
     """
     theta, cam = np.linspace(0.0, TURN, places + 1), result.cam
-    sheet_of = (sheet(cam), *grooves(cam), *paths(cam))
+    steps = drawn_steps(_STEPS, places)
+    sheet_of = (sheet(cam), *grooves(cam, steps), *paths(cam, steps))
     # the end of the turn, at which the next roller is where this one began
     moving = Pose(np.zeros(len(theta)), center(cam, theta))
     turret = MovingBody(name=TURRET, called="rollers", features=rollers(cam), pose=moving)

@@ -72,6 +72,7 @@ class GloboidalCamResult(GriddedCam):
     most_carved = 120
     roller_key = "turret.roller_radius_mm"
     most_facets = 2_000_000
+    cutter = "rollers that cut it"
 
     @cached_property
     def program(self) -> IndexProgram:

@@ -13,7 +13,6 @@ from gearcam.base.facts import Fact, Facts, Tree
 from gearcam.base.findings import limit_of
 from gearcam.kinds.gridded_shown import (
     SOLIDS,
-    accuracy_facts,
     largest_roller,
     peak_facts,
     picture_files,
@@ -40,7 +39,6 @@ def facts(result: GloboidalCamResult) -> Facts:
         "motion": {"unit": "deg"} | peak_facts(result, math.degrees(1.0), "deg", " of the turret"),
         "cam": _cam(result),
         "solid": solid_facts(result),
-        "accuracy": accuracy_facts(result, "rollers that cut it", {}),
     }
     headline = ("indexer.stops", "indexer.index_deg", "cam.center_distance_mm")
     return Facts(tree, headline, "globoidal indexing cam")

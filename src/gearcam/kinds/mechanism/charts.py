@@ -6,7 +6,6 @@ are compared, every output has a line for each of them.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
@@ -15,16 +14,10 @@ import numpy as np
 
 from gearcam.kinds.mechanism.asked import DEG, RATES
 from gearcam.linkages.transmission import ADMISSIBLE, pressure_angle
-from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Charts, Limit, Line, MarkedPlace, knot_marks
 
 if TYPE_CHECKING:
-    from gearcam.kinds.mechanism.asked import Output
     from gearcam.kinds.mechanism.result import MechanismResult
-    from gearcam.numeric.arrays import Array
-
-_STEPS: Final = 720
-"""Steps of a turn of the master in a chart."""
 
 _MOST: Final = 9
 """Most lines of a chart of several drives."""
@@ -33,13 +26,6 @@ _STEADY: Final = 1e-9
 """Range of a pressure angle that does not change, rad."""
 
 _WORDS: Final = ("place", *RATES)
-
-
-def _angles(result: MechanismResult) -> Array:
-    """Return the master's angles of a chart, rad, with both sides of knots."""
-    low, high = result.linkage.span
-    turns = max(1, round((high - low) / math.tau))
-    return with_both_sides(np.linspace(low, high, _STEPS * turns + 1), result.linkage.knots)
 
 
 def _marks(result: MechanismResult) -> tuple[MarkedPlace, ...]:
@@ -60,11 +46,12 @@ def _marks(result: MechanismResult) -> tuple[MarkedPlace, ...]:
 def _chart(angle: bool, order: int, result: MechanismResult) -> Chart | None:
     """Return the chart of a derivative of all outputs that are angles, or lengths."""
     drives = result.machines if result.compared else {"": result}
-    outputs = [one for one in result.outputs if one.angle == angle]
-    outputs = outputs[: max(1, _MOST // len(drives))]
-    if not outputs:
+    numbers = [k for k, one in enumerate(result.outputs) if one.angle == angle]
+    numbers = numbers[: max(1, _MOST // len(drives))]
+    if not numbers:
         return None
-    lines = [line for name, other in drives.items() for line in _lines(other, name, outputs, order)]
+    lines = [line for name, other in drives.items() for line in _lines(other, name, numbers, order)]
+    outputs = [result.outputs[k] for k in numbers]
     names = ", ".join(
         dict.fromkeys(one.name.removesuffix(".angle").removesuffix(".turn") for one in outputs)
     )
@@ -87,15 +74,14 @@ def _unit(angle: bool, order: int, *, timed: bool) -> str:
     return f"{'rad' if angle else 'mm'}/{'s' if timed else 'rad'}{power}"
 
 
-def _lines(result: MechanismResult, name: str, outputs: list[Output], order: int) -> Iterator[Line]:
-    q = _angles(result)
-    for one in outputs:
-        values = result.track(one)(q, order).derivatives()[order]
+def _lines(result: MechanismResult, name: str, numbers: list[int], order: int) -> Iterator[Line]:
+    q, curves = result.curves
+    for k in numbers:
+        one = result.outputs[k]
         scale = (result.speed or 1.0) ** order if order else one.unit[0]
-        own = one.stem if len(outputs) > 1 or not name else ""
-        yield Line(
-            label=", ".join(word for word in (own, name) if word), x=DEG * q, y=scale * values
-        )
+        own = one.stem if len(numbers) > 1 or not name else ""
+        label = ", ".join(word for word in (own, name) if word)
+        yield Line(label=label, x=DEG * q, y=scale * curves[k][order])
 
 
 def _path_chart(result: MechanismResult) -> Chart | None:
@@ -103,7 +89,7 @@ def _path_chart(result: MechanismResult) -> Chart | None:
     names = [*result.paths]
     if not names:
         return None
-    q = _angles(result)
+    q, _ = result.curves
     lines = []
     for name in names:
         points = np.broadcast_to(np.asarray(result.linkage.track(name, q, 0).c[0]), q.shape)
@@ -113,7 +99,7 @@ def _path_chart(result: MechanismResult) -> Chart | None:
 
 def _transmission_chart(result: MechanismResult) -> Chart | None:
     """Return the pressure angles of the dyads in which they change."""
-    q = _angles(result)
+    q, _ = result.curves
     known = result.linkage.at(q, 0)
     dyads = [one.dyad for one in result.transmissions if one.pressure_angle is not None]
     dyads = [one for one in dyads if np.ptp(pressure_angle(known, one)) > _STEADY]

@@ -200,7 +200,7 @@ def _driven(result: MechanismResult, number: int, q: Array) -> Iterator[MovingBo
         yield from _driven_in_space(drive, q)
         return
     with within(f"drive[{number}].{drive.spec.key}"):
-        scene = drive.result.plain.scene(1)
+        scene = drive.result.at_rest
     x = drive.own(q)
     for body in scene.bodies:
         moved = _moved(drive, body.name)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from copy import copy
 from dataclasses import replace
 from functools import cached_property, partial
 from itertools import chain
-from typing import TYPE_CHECKING, Any, ClassVar, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,18 +24,20 @@ from gearcam.kinds.mechanism.names import OutputNames, paths_asked, tables_of
 from gearcam.kinds.mechanism.placed import PlacedDrive, placed
 from gearcam.linkages.checks import KIND, CheckedMachine
 from gearcam.linkages.linkage import Linkage
-from gearcam.linkages.measures import HIGHEST, Peak, TrackMeasures
+from gearcam.linkages.measures import HIGHEST, Peak, TrackMeasures, TracksTogether
 from gearcam.linkages.transmission import Transmission, transmissions
 from gearcam.numeric.arguments import angles
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
 from gearcam.numeric.jets import Jet
+from gearcam.numeric.piecewise import with_both_sides
 from gearcam.results.kind import kind_of
+from gearcam.results.nested import nested_result, within
 from gearcam.results.nested import placed as findings_of
-from gearcam.results.nested import within
 from gearcam.results.result import Result
 
 if TYPE_CHECKING:
+    from gearcam.base.facts import Tree
     from gearcam.designs.design import Design
     from gearcam.linkages.dwells import DriverRange
     from gearcam.linkages.path_fits import CircleFit, LineFit
@@ -41,6 +45,9 @@ if TYPE_CHECKING:
 
 _MOST_STEPS: Final = 1e6
 """Largest number of steps of a table."""
+
+_COARSE: Final = 180
+"""Steps of a turn of the master in the charts of a draft."""
 
 _WITNESSES: Final = 1000
 """Master's angles at which lengths are compared."""
@@ -88,6 +95,9 @@ class MechanismResult(Result):
     }
     before_studies = ("drives", "linkage")
 
+    chart_steps = 720
+    """Steps of a turn of the master in a chart."""
+
     _given: tuple[PlacedDrive, ...] = ()
     """Drives in the place of those of the design."""
 
@@ -103,11 +113,17 @@ class MechanismResult(Result):
     def _placed(self, at: str, spec: Any) -> PlacedDrive:
         def build(nested: Design) -> Any:
             with within(f"{at}.{spec.key}"):
-                result = kind_of(nested).result(nested, self.tolerances)
+                result = nested_result(nested, self.tolerances)
                 _ = result.pair if spec.pair is not None else result.cam
                 return result
 
         return placed(spec, build)
+
+    def coarse(self) -> Self:
+        """Return the mechanism with fewer places in its charts (see `Staged`)."""
+        made = copy(self)
+        made.chart_steps = _COARSE
+        return made
 
     @cached_property
     def linkage(self) -> Linkage:
@@ -248,11 +264,10 @@ class MechanismResult(Result):
         """Speed of the master, rad/s; None if the design does not say."""
         return self.design.drive[0].speed
 
-    @property
-    def charts(self) -> tuple[str, ...]:
-        """Names that `chart` accepts, first those of what is asked for first."""
+    def _in_order(self, names: Iterable[str]) -> Sequence[str]:
+        """Return names of charts, first those of what is asked for first."""
         first = _TURNING if self.outputs[0].angle else ()
-        return tuple(sorted(super().charts, key=lambda name: name not in first))
+        return sorted(names, key=lambda name: name not in first)
 
     @cached_property
     def checked(self) -> tuple[Finding, ...]:
@@ -298,7 +313,7 @@ class MechanismResult(Result):
         first = self.drives[0]
         master = self._placed(at, replace(first.spec, span=None, **drive)).instead_of(first)
         made = type(self)(replace(self.design, compare=(), examined=True), self.tolerances)
-        made._given = (master, *self.drives[1:])
+        made._given, made.chart_steps = (master, *self.drives[1:]), self.chart_steps
         with within(at):
             _ = made.linkage
         return made
@@ -310,15 +325,34 @@ class MechanismResult(Result):
 
     def measured(self, highest: int) -> dict[str, TrackMeasures]:
         """Return the `measures` with extremes of derivatives up to the `highest` only."""
-        return {one.stem: self._measures(one, highest) for one in self.outputs}
-
-    def _measures(self, one: Output, highest: int) -> TrackMeasures:
-        return TrackMeasures(self.track(one), self.linkage.knots, self.linkage.closed, highest)
+        linkage, outputs = self.linkage, self.outputs
+        tracks = partial(linkage.real_tracks, [one.quantity for one in outputs])
+        together = TracksTogether(tracks, linkage.knots, highest)
+        return {
+            one.stem: TrackMeasures(
+                self.track(one), linkage.knots, linkage.closed, highest, (together, number)
+            )
+            for number, one in enumerate(outputs)
+        }
 
     @cached_property
-    def closure_error(self) -> float:
-        """Largest difference of a member's length from the one it has, mm, over the cycle."""
-        return self.linkage.miss(np.linspace(*self.linkage.span, _WITNESSES))
+    def curves(self) -> tuple[Array, list[list[Array]]]:
+        """The master's angles of charts, with both sides of knots, and each output there.
+
+        Values and derivatives up to the `HIGHEST`.
+        """
+        low, high = self.linkage.span
+        steps = self.chart_steps * max(1, round((high - low) / math.tau))
+        q = with_both_sides(np.linspace(low, high, steps + 1), self.linkage.knots)
+        tracks = self.linkage.real_tracks([one.quantity for one in self.outputs], q, HIGHEST)
+        return q, [one.derivatives() for one in tracks]
+
+    @cached_property
+    def accuracy(self) -> Tree:
+        """The largest difference of a member's length from the one it has (see `Staged`)."""
+        how = "largest difference of a length of a member from the one it has"
+        miss = self.linkage.miss(np.linspace(*self.linkage.span, _WITNESSES))
+        return {"lengths_mm": miss, "how": {"lengths_mm": how}}
 
     @cached_property
     def transmissions(self) -> tuple[Transmission, ...]:
@@ -432,7 +466,8 @@ class MechanismResult(Result):
 
     def measures_of(self, one: Output) -> TrackMeasures:
         """Return the extremes and the like of any output."""
-        return self.measures.get(one.stem) or self._measures(one, HIGHEST)
+        knots, closed = self.linkage.knots, self.linkage.closed
+        return self.measures.get(one.stem) or TrackMeasures(self.track(one), knots, closed)
 
     def output_of(self, asked: Amount) -> Output:
         """Return the one output that a table is about, `asked` for."""

@@ -50,10 +50,6 @@ def facts(result: MechanismResult) -> Facts:
             for name, other in result.compared.items()
         }
         or None,
-        "accuracy": {
-            "lengths_mm": result.closure_error,
-            "how": {"lengths_mm": "largest difference of a length of a member from the one it has"},
-        },
     }
     first = next(iter(result.outputs))
     return Facts(tree, (f"outputs.{first.stem}.stroke_{first.unit[1]}",), _called(result))

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from gearcam.kinds.gridded_drawn import (
+    drawn_steps,
     filled,
     motion_chart,
     pressure_chart,
@@ -84,7 +85,7 @@ def centers(result: SpatialCamResult, theta: Array) -> Plane:
     return along + cam.hand * point[0, :, 1] + 1j * point[0, :, 2]
 
 
-def edge(result: SpatialCamResult, wall: SpatialWall) -> Plane:
+def edge(result: SpatialCamResult, wall: SpatialWall, steps: int = _STEPS) -> Plane:
     """Return the edge of a wall on the sheet.
 
     Parameters
@@ -93,6 +94,8 @@ def edge(result: SpatialCamResult, wall: SpatialWall) -> Plane:
         The cam.
     wall : SpatialWall
         One of its walls.
+    steps : int
+        Number of cam angles.
 
     Returns
     -------
@@ -100,7 +103,7 @@ def edge(result: SpatialCamResult, wall: SpatialWall) -> Plane:
         From the left to the right end.
     """
     radius, turn = result.cam.outer_radius, 2.0 * math.pi
-    theta = np.linspace(0.0, turn, _STEPS, endpoint=False)
+    theta = np.linspace(0.0, turn, steps, endpoint=False)
     points = wall.contact(theta, wall.edge(theta)[:, None]).points[:, 0]
     azimuth = np.arctan2(points[:, 1], points[:, 0]) * result.cam.hand
     order = np.argsort(azimuth % turn)
@@ -116,9 +119,9 @@ def _corners(result: SpatialCamResult) -> Plane:
     return np.array([0.0, width, width + 1j * height, 1j * height])
 
 
-def _path(result: SpatialCamResult) -> Feature:
+def _path(result: SpatialCamResult, steps: int = _STEPS) -> Feature:
     """Return the path of the roller's centre."""
-    theta = np.linspace(0.0, 2.0 * math.pi, _STEPS + 1)
+    theta = np.linspace(0.0, 2.0 * math.pi, steps + 1)
     return Feature(layer=PITCH, shape=Path(points=centers(result, theta), closed=False))
 
 
@@ -132,11 +135,19 @@ def developed_drawing(result: SpatialCamResult) -> Drawing:
     return Drawing(name="developed", features=(sheet, *edges, _path(result)))
 
 
-def cut_away(result: SpatialCamResult) -> tuple[Feature, ...]:
-    """Return what is cut away of the sheet: the groove, or all beside a wall or a rib."""
+def cut_away(result: SpatialCamResult, steps: int = _STEPS) -> tuple[Feature, ...]:
+    """Return what is cut away of the sheet: the groove, or all beside a wall or a rib.
+
+    Parameters
+    ----------
+    result : SpatialCamResult
+        The cam.
+    steps : int
+        Number of cam angles.
+    """
     corners = _corners(result)
     bottom, top = corners[:2], corners[:1:-1]
-    lines = {wall.side: edge(result, wall) for wall in result.cam.walls}
+    lines = {wall.side: edge(result, wall, steps) for wall in result.cam.walls}
     if result.cam.apart:
         between = (lines[-1], top), (bottom, lines[1])
     else:
@@ -158,8 +169,13 @@ def picture(result: SpatialCamResult) -> Drawing:
     theta = np.array([result.design.output.pose % (2.0 * math.pi)])
     pose = Pose(0.0, complex(centers(result, theta)[0]))
     shown = place(rollers(result), pose)
+    return Drawing(name="cam", features=(*_sheet(result), *shown))
+
+
+def _sheet(result: SpatialCamResult, steps: int = _STEPS) -> tuple[Feature, ...]:
+    """Return the sheet with what is cut away and the path of the roller's centre."""
     sheet = filled(BLANK, _corners(result))
-    return Drawing(name="cam", features=(sheet, *cut_away(result), _path(result), *shown))
+    return (sheet, *cut_away(result, steps), _path(result, steps))
 
 
 _EYE: Final = (1.0, -0.8, 0.6)
@@ -181,7 +197,7 @@ def scene(result: SpatialCamResult, places: int = PLACES) -> Scene:
     Scene
     """
     theta = np.linspace(0.0, 2.0 * math.pi, places + 1)
-    sheet = (one for one in picture(result).features if one.kind != FOLLOWER)
+    sheet = _sheet(result, drawn_steps(_STEPS, places))
     moving = Pose(np.zeros(len(theta)), centers(result, theta))
     follower = MovingBody(name="follower", called=ROLLER, features=rollers(result), pose=moving)
     return unrolled_scene(result, theta, sheet, follower, _EYE)

@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from gearcam.base.adjustments import Changes
     from gearcam.numeric.pose import SpacePose
     from gearcam.parts.bands import BandedBody
+    from gearcam.results.parts import Estimates
     from gearcam.spatial.loaded import RollerTouch
     from gearcam.spatial.milling import RotaryPath
     from gearcam.spatial.sizing import SolvedDiameter
@@ -77,6 +78,7 @@ class SpatialCamResult(GriddedCam):
     most_carved = 240
     roller_key = "follower.roller_radius_mm"
     most_facets = 4_000_000
+    cutter = "roller that cuts it"
 
     @cached_property
     def program(self) -> Program:
@@ -225,6 +227,14 @@ class SpatialCamResult(GriddedCam):
         """Largest distance of the walls from the mesh, mm; of a carved one its scallops."""
         error = scallop if self.carved else chord_error
         return error(self.cam, self.solid_steps, self.design.output.wall_points)
+
+    @property
+    def more_errors(self) -> Estimates:
+        """The error of the STEP solid, if a file asks for it (see `GriddedCam.more_errors`)."""
+        if "step" not in self.design.output.files:
+            return {}
+        how = "distance of exact points from the B-splines, half-way between those interpolated"
+        return {"step_mm": (self.bands.error, how)}
 
     @cached_property
     def bands(self) -> BandedBody:

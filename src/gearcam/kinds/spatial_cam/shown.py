@@ -11,7 +11,6 @@ import numpy as np
 from gearcam.base.facts import Fact, Facts, Tree, extent
 from gearcam.kinds.gridded_shown import (
     SOLIDS,
-    accuracy_facts,
     largest_roller,
     peak_facts,
     picture_files,
@@ -35,10 +34,7 @@ if TYPE_CHECKING:
 
 def facts(result: SpatialCamResult) -> Facts:
     """Return the facts of a cam in space, its `result`."""
-    design, of_step = result.design, dict[str, tuple[float, str]]()
-    if result.solid_asked and "step" in design.output.files:
-        how = "distance of exact points from the B-splines, half-way between those interpolated"
-        of_step["step_mm"] = result.bands.error, how
+    design = result.design
     tree: Tree = {
         "motion": _motion(result),
         "cam": _cam(result),
@@ -52,7 +48,6 @@ def facts(result: SpatialCamResult) -> Facts:
         },
         "solid": solid_facts(result),
         "tool_path": _tool_path(result),
-        "accuracy": accuracy_facts(result, "roller that cuts it", of_step),
     }
     headline = ("motion.total_lift", "cam.outer_diameter_mm")
     return Facts(tree, headline, f"{design.cam.form} cam for {design.follower.named}")

@@ -396,7 +396,7 @@ def test_links_are_as_wide_as_suits_the_machine() -> None:
 
 def test_symbols_are_not_said_to_be_ready_to_cut() -> None:
     names = ("four-bar", "lift")
-    told = {name: blocks(machine(name), names=["verdict"], seek=False)["verdict"] for name in names}
+    told = {name: blocks(machine(name), seek=False)["verdict"] for name in names}
     assert "Look before you build" in told["four-bar"]
     assert "Nothing is wrong with the motion" in told["lift"]
     assert not any("cut" in one for one in told.values())
