@@ -57,8 +57,9 @@ _FEW = 0.12
 _GRAIN = 1e-3
 """Distance, in tolerances, below which two points of a dense run are merged."""
 
-_DENSE = 1.0 / 32.0
-"""Largest chord error of dense points, in tolerances."""
+_DENSE = 2.0
+"""Largest chord error of dense points, in tolerances over the square of their number per chord: with
+8 a 32nd."""
 
 _STRAIGHT = 16.0 * np.finfo(float).eps
 """Rounding of the angle between tangents, rad."""
@@ -355,7 +356,7 @@ class Sampler(ShortRepr):
             They include the vertices of the polygon, the ends of the curves, their joints, and the
             breaks: between two points the curvature is smooth.
         """
-        vertices = self.chords[0]
+        vertices, least = self.chords[0], _DENSE / oversampling**2 * self.tolerance
         steps = np.arange(oversampling) / oversampling
         j = (vertices[:-1, None] + np.diff(vertices)[:, None] * steps).ravel()
         smooth = self.joints[:-1][~self.curves.corner]
@@ -367,7 +368,7 @@ class Sampler(ShortRepr):
         j, rank = j[order], rank[order]
         points, tangents = self.at(j)
         for _ in range(_ROUNDS):
-            long = np.flatnonzero(sags(points, tangents, rank) > _DENSE * self.tolerance)
+            long = np.flatnonzero(sags(points, tangents, rank) > least)
             if not long.size:
                 break
             j = np.insert(j, long + 1, 0.5 * (j[long] + j[long + 1]))

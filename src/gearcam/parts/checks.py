@@ -19,7 +19,7 @@ from gearcam.numeric.arrays import as_pairs
 from gearcam.parts.blank import KIND
 from gearcam.parts.body import Edge, Part
 from gearcam.parts.shapes import Circle
-from gearcam.parts.tools import ToolLimits, tool_limits
+from gearcam.parts.tools import UNLIMITED, ToolLimits, tool_limits
 
 _FINE = 0.01
 """Sagitta, in tolerances, of the chords of round outsides from which walls are measured."""
@@ -39,16 +39,21 @@ class CheckedParts(ShortRepr):
         Width of the cut; 0 if the design gives none.
     uncut : tuple of bool
         Whether a cutter of this kerf leaves metal on flanks, for each part.
+    sought : bool
+        Whether the largest tools are looked for; a draft does without.
     """
 
     parts: tuple[Part, ...]
     names: tuple[str, ...] = ("wheel 1", "wheel 2")
     kerf: float = 0.0
     uncut: tuple[bool, ...] = (False, False)
+    sought: bool = True
 
     @cached_property
     def tools(self) -> tuple[ToolLimits, ...]:
         """The largest tools for outlines (of stepped wheels the lowest step) and recesses."""
+        if not self.sought:
+            return (UNLIMITED,) * len(self.parts)
         return tuple(_tools(part) for part in self.parts)
 
 

@@ -92,6 +92,12 @@ class ToolLimits(ShortRepr):
         return made
 
 
+UNLIMITED: Final = ToolLimits(
+    inner_radius=math.inf, inner_place=None, slot=math.inf, slot_place=None
+)
+"""Those of a convex outline, or of one that nobody has looked at."""
+
+
 def tool_limits(contour: Contour, *, hollow: bool = False) -> ToolLimits:
     """Return the limits of a round tool that cuts an edge from the side without metal.
 

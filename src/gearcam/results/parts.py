@@ -35,6 +35,9 @@ _STEP_PART: Final = 2e-3
 COARSE: Final = 0.02
 """Chord tolerance of a draft, mm: a fifth of a pixel at 10 pixels per mm."""
 
+_DRAFTED: Final = 2
+"""Points per chord from which the areas of a draft are computed: they are good to a millionth."""
+
 CHORDS: Final = ("outlines, between their points", ["chord_mm"])
 """The chord error among the `main_errors`."""
 
@@ -58,6 +61,8 @@ class PartsResult(Result):
         Accuracy of the internal computations.
     """
 
+    drafted: bool = False
+    """Whether it is only looked at."""
     before_output: ClassVar[Sequence[str]] = ()
     """The stages that do not depend on the table ``[output]`` of a design."""
 
@@ -74,8 +79,11 @@ class PartsResult(Result):
         return result
 
     def coarse(self) -> Self:
-        """Return the result with outlines for the eye (see `Staged`)."""
-        return self.with_chords(COARSE)
+        """Return the result with outlines for the eye, without limits of tools (see `Staged`)."""
+        made = self.with_chords(COARSE)
+        made.tolerances = replace(self.tolerances, oversampling=_DRAFTED)
+        made.drafted = True
+        return made
 
     @cached_property
     @abstractmethod

@@ -33,6 +33,9 @@ _FINE: Final = 15
 """Places in each direction around the best one, each time that it is narrowed: few large steps cost
 less than many small ones."""
 
+_MOST: Final = 100
+"""Largest number of times: a dozen are usual."""
+
 _BLOCK: Final = 1 << 14
 """Places at which a function is evaluated at once, many boxes together."""
 
@@ -126,10 +129,16 @@ def _lowest_in(
 
 
 def _narrowed(function: OfPlaces, spot: Spot, box: Box) -> Spot:
-    """Return the lowest point within a box that begins one step around a point of its grid."""
+    """Return the lowest point near a point of a grid over a box.
+
+    Around it a window of one step becomes smaller as long as the lowest point is inside it, and
+    follows one that is at its border, such as along the end of what counts.
+    """
     sizes = [(box[1] - box[0]) / (_AROUND - 1), (box[3] - box[2]) / (_ALONG - 1)]
     least = [NARROW * (box[1] - box[0]), NARROW * (box[3] - box[2])]
-    while sizes[0] > least[0] or sizes[1] > least[1]:
+    for _ in range(_MOST):
+        if sizes[0] <= least[0] and sizes[1] <= least[1]:
+            break
         near = (
             max(box[0], spot.theta - sizes[0]),
             min(box[1], spot.theta + sizes[0]),
@@ -137,6 +146,13 @@ def _narrowed(function: OfPlaces, spot: Spot, box: Box) -> Spot:
             min(box[3], spot.x + sizes[1]),
         )
         found, _ = _lowest_in(function, [near], (_FINE, _FINE if sizes[1] else 1))
-        spot = min(spot, found, key=lambda one: one.value)
-        sizes = [2.0 * size / (_FINE - 1) for size in sizes]
+        moved = found.value < spot.value
+        at_border = moved and (
+            (found.theta in near[:2]
+            and found.theta not in box[:2])
+            or (found.x in near[2:]
+            and found.x not in box[2:])
+        )
+        spot = found if moved else spot
+        sizes = sizes if at_border else [2.0 * size / (_FINE - 1) for size in sizes]
     return spot

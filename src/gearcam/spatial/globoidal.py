@@ -48,6 +48,10 @@ _SCAN: Final = 720
 _ALONG: Final = 9
 """Places along a roller at which it is looked whether it is on the cam."""
 
+_AT_EDGE: Final = 0.02
+"""Distance from the top or the foot of the rib, as a share of its height, that counts as none when
+an extreme has been looked for."""
+
 _TURRET: Final = "axis of the turret"
 
 
@@ -274,12 +278,38 @@ class GloboidalWall(RollerWall):
 
     def least(self, measure: Callable[[RollerContact], Array]) -> Spot:
         """Return the least value of a measure of its points (see `RollerWall.least`)."""
+        cam = self.cam
 
         def on_rib(theta: Array, x: Array) -> Array:
             contact = self.contact(theta, x)
-            return np.where(self.cam.inside(contact.points), measure(contact), math.inf)
+            return np.where(cam.inside(contact.points), measure(contact), math.inf)
 
-        return _placed(lowest(on_rib, self.cam.boxes()))
+        spot = lowest(on_rib, cam.boxes())
+        ends = (self._least_along(depth, measure, spot) for depth in (cam.top, cam.floor))
+        return _placed(min(spot, *ends, key=lambda one: one.value))
+
+    def _least_along(
+        self, depth: float, measure: Callable[[RollerContact], Array], near: Spot
+    ) -> Spot:
+        """Return the least value along the top of the rib or its foot, if it is `near` there.
+
+        A grid of cam angles and places does not resolve a value that falls along this edge: its
+        points come as near to the edge as they happen to.
+        """
+        cam, at = self.cam, (np.array([near.theta]), np.array([[near.x]]))
+        off = float(cam.depth(self.contact(*at).points)[0, 0]) - depth
+        if not (math.isfinite(near.value) and abs(off) < _AT_EDGE * (cam.floor - cam.top)):
+            return near
+
+        def on_edge(theta: Array, _: Array) -> Array:
+            contact = self.contact(theta, self.place(theta, depth)[:, None])
+            on = cam.between_faces(contact.points)
+            return np.where(on, measure(contact), math.inf)
+
+        boxes = (box for box in cam.boxes() if box[0] <= near.theta <= box[1])
+        found = lowest(on_edge, [(start, end, 0.0, 0.0) for start, end, *_ in boxes])
+        x = float(self.place(np.array([found.theta]), depth)[0])
+        return min(near, replace(found, x=x), key=lambda one: one.value)
 
     def place(self, theta: Array, depth: float) -> Array:
         """Return the places along the roller at which it is at a distance from the turret's axis.

@@ -217,6 +217,7 @@ class MadeCam(LoadedCam, PartsResult):
             names=tuple(part.name for part in parts),
             kerf=self.design.output.kerf,
             uncut=(False,) * len(parts),
+            sought=not self.drafted,
         )
 
     def rows_of(self, number: int) -> Sequence[str]:

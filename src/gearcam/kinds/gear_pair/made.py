@@ -157,7 +157,8 @@ class MadePair(PartsResult):
         """Input of the checks of parts."""
         from gearcam.kinds.gear_pair.parts import parts_subject
 
-        return parts_subject(self.parts, self.gears, self.design.output.kerf)
+        kerf, sought = self.design.output.kerf, not self.drafted
+        return parts_subject(self.parts, self.gears, kerf, sought=sought)
 
     @property
     def ordered(self) -> bool:

@@ -160,11 +160,25 @@ def _mark(
     )
 
 
-def parts_subject(parts: tuple[Part, Part], gears: tuple[Gear, Gear], kerf: float) -> CheckedParts:
-    """Return the input of checks of `parts`, with the reach on `gears` of a cutter, `kerf` mm."""
+def parts_subject(
+    parts: tuple[Part, Part], gears: tuple[Gear, Gear], kerf: float, *, sought: bool
+) -> CheckedParts:
+    """Return the input of checks of parts.
+
+    Parameters
+    ----------
+    parts : (Part, Part)
+        Both wheels, driver first.
+    gears : (Gear, Gear)
+        Their teeth, which a cutter must reach.
+    kerf : float, mm
+        Width of its cut.
+    sought : bool
+        Whether the largest tools are looked for.
+    """
     pairs = zip(parts, gears, strict=True)
-    uncut = tuple(bool(kerf) and _uncut(part, gear, kerf) for part, gear in pairs)
-    return CheckedParts(parts=parts, kerf=kerf, uncut=uncut)
+    uncut = tuple(sought and bool(kerf) and _uncut(part, gear, kerf) for part, gear in pairs)
+    return CheckedParts(parts=parts, kerf=kerf, uncut=uncut, sought=sought)
 
 
 def _uncut(part: Part, gear: Gear, kerf: float) -> bool:
