@@ -58,8 +58,8 @@ _GRAIN = 1e-3
 """Distance, in tolerances, below which two points of a dense run are merged."""
 
 _DENSE = 2.0
-"""Largest chord error of dense points, in tolerances over the square of their number per chord: with
-8 a 32nd."""
+"""Largest chord error of dense points, in tolerances over the square of their number per chord:
+with 8 a 32nd."""
 
 _STRAIGHT = 16.0 * np.finfo(float).eps
 """Rounding of the angle between tangents, rad."""
