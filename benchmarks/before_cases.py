@@ -22,14 +22,13 @@ BEFORE = "44f8390"
 
 CHILD = """
 import sys, tempfile, time
-import numpy as np
 import gearcam
 try:
     from gearcam.numeric.arrays import keep_freed_memory
 except ImportError:  # its place in older commits
     from gearcam.numeric.memory import keep_freed_memory
 keep_freed_memory()
-nail, cam = (gearcam.load(path) for path in sys.argv[1:3])
+nail = gearcam.load(sys.argv[1])
 
 def outlines():
     job = gearcam.build(nail)
@@ -46,32 +45,10 @@ def whole(_):
         gearcam.build(nail).write(folder, files=("dxf", "stl", "csv"))
 
 none = lambda: None
-def calls(made, points, times):
-    for sampler in samplers(made):
-        for _ in range(times):
-            sampler.at(np.linspace(0.0, sampler.least, points, endpoint=False))
-
-def samplers(made):
-    gears = getattr(made, "gears", None)
-    return [gear.profile.sampler for gear in gears] if gears else [made.cam.sampler]
-
-def profile():
-    made = gearcam.build(cam)
-    made.profile.vertices
-    return made
-
 cases = {
-    "outlines": (none, lambda _: outlines()),
-    "profile": (none, lambda _: profile()),
-    "checks": (outlines, lambda job: job.findings),
     "dxf": (checked, lambda job: job.files("dxf")),
     "step": (checked, lambda job: job.files("step")),
     "warm": (none, whole),
-    "outline points": (outlines, lambda job: calls(job, 20500, 1)),
-    "outline calls": (outlines, lambda job: calls(job, 8, 23)),
-    "dense points": (outlines, lambda job: [gear.profile.contour.runs for gear in job.gears]),
-    "profile points": (profile, lambda made: calls(made, 657, 1)),
-    "profile calls": (profile, lambda made: calls(made, 8, 5)),
 }
 for line in sys.stdin:
     prepare, act = cases[line.strip()]
@@ -88,37 +65,15 @@ sys.exit(main())
 """
 CASES = {
     "dxf": ("(i) DXF of the nail machine", 0.25, 9),
-    "outlines": ("(j) Outlines of the nail machine", 0.4, 25),
-    "profile": ("(k) A cam's profile", 0.7, 25),
-    "checks": ("(l) Checks of the nail machine", 0.3, 25),
     "warm": ("(m) The nail machine's dxf, stl and csv in one process", 0.35, 9),
     "step": ("(n) STEP of the nail machine", 0.6, 5),
 }
 """Cases with title, largest ratio allowed, and number of samples."""
-OUTLINES_NOTE = """\
-the 41 000 curve points of both outlines take {:.3f} of the earlier time if they are computed in one
-call per wheel, and the 46 calls that compute them {:.3f} with eight points each. The rest are tips,
-corners, loops and the test for self-intersections. Both wheels in one pass would save half of the
-calls and none of the points."""
-PROFILE_NOTE = """\
-the time of a profile of 398 vertices is that of calls, not of points: its 657 points in one call
-take {:.3f} of the earlier time, the five calls that compute them {:.3f} with eight points each. The
-rest are similar small calls for the motion, the extremes and the trimming."""
-CHECKS_NOTE = """\
-the dense points of both outlines, which give the largest tool and are used again for files, alone
-take {:.3f} of the earlier time."""
-GIVEN_UP = {
-    "outlines": (("outline points", "outline calls"), OUTLINES_NOTE),
-    "profile": (("profile points", "profile calls"), PROFILE_NOTE),
-    "checks": (("dense points",), CHECKS_NOTE),
-}
-"""Parts of the cases that miss their target, and the text about them."""
-CAM = ROOT / "profiles" / "plate_cam_offset_roller.toml"
 NOTE = f"Processor time, both sides alternately; before: commit {BEFORE}."
 
 
 def against_before(fewer: int = 1) -> list[Result]:
-    """(i) to (o) Run times of stages relative to the older commit."""
+    """(i), (m) to (o) Run times of stages relative to the older commit."""
     with ExitStack() as stack:
         before = stack.enter_context(tree_of(BEFORE))
         nail = Path(stack.enter_context(tempfile.TemporaryDirectory())) / NAIL.name
@@ -128,22 +83,17 @@ def against_before(fewer: int = 1) -> list[Result]:
         sides = {name: stack.enter_context(_side(tree, nail)) for name, tree in trees.items()}
         results = []
         for case, (title, asked, tries) in CASES.items():
-            timings = _in_turns(sides, case, max(tries // fewer, 1))
-            given_up = ""
-            if case in GIVEN_UP:
-                parts, text = GIVEN_UP[case]
-                now = {"now": sides["now"]}
-                alone = [_in_turns(now, part, max(tries // fewer, 1))[0] for part in parts]
-                given_up = text.format(*(one.over(timings[0]) for one in alone))
-            results.append(_ratio(title, asked, timings, NOTE, given_up))
+            timings = alternately(sides, case, max(tries // fewer, 1))
+            results.append(ratio_of(title, asked, timings, NOTE))
         return [*results, _cold(trees, nail, max(9 // fewer, 1))]
 
 
 def _side(tree: Path, nail: Path) -> subprocess.Popen[str]:
-    return _python(CHILD, str(nail), str(CAM), PYTHONPATH=str(tree / "src"))
+    return child(CHILD, str(nail), PYTHONPATH=str(tree / "src"))
 
 
-def _python(program: str, *words: str, **variables: str) -> subprocess.Popen[str]:
+def child(program: str, *words: str, **variables: str) -> subprocess.Popen[str]:
+    """Return a process that answers lines with times."""
     return subprocess.Popen(
         [sys.executable, "-c", program, *words],
         env={**os.environ, **variables},
@@ -153,7 +103,7 @@ def _python(program: str, *words: str, **variables: str) -> subprocess.Popen[str
     )
 
 
-def _in_turns(sides: dict[str, subprocess.Popen[str]], case: str, count: int) -> list[Timing]:
+def alternately(sides: dict[str, subprocess.Popen[str]], case: str, count: int) -> list[Timing]:
     """Return samples of a case from both sides, alternately; the first round is not counted."""
     samples: dict[str, list[float]] = {name: [] for name in sides}
     for _ in range(count + 1):
@@ -177,12 +127,11 @@ def _cold(trees: dict[str, Path], nail: Path, tries: int) -> Result:
             tries,
         )
     note = f"Whole processes, alternately; before: commit {BEFORE}."
-    return _ratio("(o) The nail machine's dxf, stl and csv by the command", 0.55, timings, note)
+    return ratio_of("(o) The nail machine's dxf, stl and csv by the command", 0.55, timings, note)
 
 
-def _ratio(
-    title: str, asked: float, timings: list[Timing], note: str, given_up: str = ""
-) -> Result:
+def ratio_of(title: str, asked: float, timings: list[Timing], note: str) -> Result:
+    """Return the ratio of the second timing to the first."""
     before, now = timings
     ratio = now.over(before)
     return Result(
@@ -191,7 +140,6 @@ def _ratio(
         found=f"{ratio:.3f} of it",
         passed=ratio <= asked,
         body=[*table(timings), "", note],
-        given_up=given_up,
     )
 
 
@@ -235,9 +183,9 @@ def large_growth(tries: int = 5) -> Result:
             for count in counts:
                 path = folder / f"{count}.toml"
                 path.write_text(_design(what, count), encoding="utf-8")
-                side = stack.enter_context(_python(GROWING, str(path)))
+                side = stack.enter_context(child(GROWING, str(path)))
                 sides[f"{count} {what}"] = side
-            timings = _in_turns(sides, "", tries)
+            timings = alternately(sides, "", tries)
         rows += [timing.line() for timing in timings]
         steps = [timing.over(before) for before, timing in pairwise(timings)]
         slopes[what] = slope(counts, [math.prod(steps[:k]) for k in range(len(counts))])

@@ -9,6 +9,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tools"))
 
+import asked_cases
 import before_cases
 import cam_cases
 import cases
@@ -71,6 +72,7 @@ def main() -> int:
         sweep_cases.of_sweeps,
         design_cases.of_cams,
         before_cases.against_before,
+        asked_cases.of_what_is_asked,
         before_cases.large_growth,
     ):
         found = case()

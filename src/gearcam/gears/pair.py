@@ -30,6 +30,7 @@ from gearcam.gears.rack_limits import (
 from gearcam.gears.rolling import Rolling, roll
 from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.gears.track import Wheel
+from gearcam.gears.track_table import tabled
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.laws.ratio.span import RACK, RING, WHEEL, Lobes
 from gearcam.numeric.arguments import whole
@@ -353,8 +354,10 @@ def make_pair(
     demand_shift(rack, spec, module)
     demand_clearance(rack, spec, module, finish)
 
+    tracks = tabled(rolling)
+
     def toothing(wheel: Wheel, rack: BasicRack) -> Toothing:
-        track = rolling.tracks[wheel - 1]
+        track = tracks[wheel - 1]
         pinions: tuple[float, ...] = ()
         if wheel == 2 and rolling.mate == RING and track.concave.radius < math.inf:
             least = float(rolling.curvature_extremes[0][1].min())

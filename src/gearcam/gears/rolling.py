@@ -29,7 +29,7 @@ from gearcam.base.tolerances import Tolerances
 from gearcam.gears.track import ArcLength, Frames, Track, Wheel
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.laws.ratio.span import RACK, RING, WHEEL, demand_smooth
-from gearcam.numeric.arrays import Array, Ints, Plane
+from gearcam.numeric.arrays import Array, Ints, Plane, complex_of
 from gearcam.numeric.chebyshev import expand, missed
 from gearcam.numeric.piecewise import extremes_of_each
 from gearcam.numeric.pose import Pose
@@ -317,13 +317,14 @@ class Centrode(Track):
         speed = np.sqrt(r * r + dr * dr)
         moved = phi if self.wheel == 1 else law.driven(x) + turns * law.lobes.advance
         if self.slides:
-            pole, point = _complex(np.ones(r.shape), np.zeros(r.shape)), _complex(r, size * moved)
+            pole = np.ones(r.shape, dtype=np.complex128)
+            point = complex_of(r, size * moved)
         else:
             mate = self.rolling.mate
             turned = moved if self.wheel == 1 else -mate * moved
-            pole = _complex(np.cos(turned), np.sin(turned))
+            pole = complex_of(np.cos(turned), np.sin(turned))
             point = (r if self.wheel == 1 else r - mate * size) * pole
-        tangent = _complex(dr / speed, r / speed) * pole
+        tangent = complex_of(dr / speed, r / speed) * pole
         kappa = np.empty(0)
         if curved:
             (ddr,) = more
@@ -346,13 +347,6 @@ class Centrode(Track):
     def curvature_extremes(self) -> tuple[Array, Array]:
         """See `Track.curvature_extremes`."""
         return self.rolling.curvature_extremes[self.wheel - 1]
-
-
-def _complex(real: Array, imag: Array) -> Plane:
-    """Return ``real + 1j*imag`` without multiplication."""
-    result = np.empty(np.shape(real), dtype=np.complex128)
-    result.real, result.imag = real, imag
-    return result
 
 
 def _radii(ratios: Sequence[Any], mate: int) -> list[Any]:

@@ -360,21 +360,25 @@ class GriddedCam(LoadedCam, Result):
 
     @cached_property
     def accuracy(self) -> Tree | None:
-        """The errors of the solid where files ask for it (see `Staged`)."""
-        if not self.solid_asked:
+        """The errors of the solid where files or a density ask for it (see `Staged`)."""
+        errors: dict[str, tuple[float, str]] = {}
+        if self.solid_asked:
+            chords = "distance of the walls from the middles of all edges of the mesh"
+            scallops = f"height of the scallops between the positions of the {self.cutter}"
+            errors["chord_mm"] = self.chord_error, scallops if self.carved else chords
+            errors |= self.more_errors
+        if self.weighed:
+            how = "a third of the change from a mesh of half the steps"
+            errors["volume_mm3"] = self.volume_error, how
+        if not errors:
             return None
-        chords = "distance of the walls from the middles of all edges of the mesh"
-        scallops = f"height of the scallops between the positions of the {self.cutter}"
-        errors = {
-            "chord_mm": (self.chord_error, scallops if self.carved else chords),
-            **self.more_errors,
-            "volume_mm3": (
-                self.volume_error,
-                "a third of the change from a mesh of half the steps",
-            ),
-        }
         values: Tree = {name: value for name, (value, _) in errors.items()}
         return values | {"how": {name: how for name, (_, how) in errors.items()}}
+
+    @property
+    def weighed(self) -> bool:
+        """Whether a file or a density needs the volume."""
+        return self.solid_asked or bool(self.design.blank.density)
 
     @property
     def solid_asked(self) -> bool:

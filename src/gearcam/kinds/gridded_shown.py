@@ -69,7 +69,7 @@ def largest_roller(cam: RollerCam) -> Fact | None:
 def solid_facts(result: GriddedCam) -> Tree | None:
     """Return volume and mass of a `result`, where files or a density ask for them."""
     density = result.design.blank.density
-    if not (result.solid_asked or density):
+    if not result.weighed:
         return None
     volume = result.mesh.volume
     return {

@@ -41,6 +41,13 @@ def as_pairs(points: Plane) -> Array:
     return np.ascontiguousarray(points, dtype=np.complex128).view(np.float64).reshape(-1, 2)
 
 
+def complex_of(real: Array, imag: Array) -> Plane:
+    """Return ``real + 1j*imag`` without multiplication."""
+    result = np.empty(np.shape(real), dtype=np.complex128)
+    result.real, result.imag = real, imag
+    return result
+
+
 def apart(rising: Array, least: float) -> Array:
     """Return rising values (n,) without those that follow another by no more than `least`."""
     return rising[np.diff(rising, prepend=-np.inf) > least]

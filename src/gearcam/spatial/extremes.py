@@ -148,10 +148,8 @@ def _narrowed(function: OfPlaces, spot: Spot, box: Box) -> Spot:
         found, _ = _lowest_in(function, [near], (_FINE, _FINE if sizes[1] else 1))
         moved = found.value < spot.value
         at_border = moved and (
-            (found.theta in near[:2]
-            and found.theta not in box[:2])
-            or (found.x in near[2:]
-            and found.x not in box[2:])
+            (found.theta in near[:2] and found.theta not in box[:2])
+            or (found.x in near[2:] and found.x not in box[2:])
         )
         spot = found if moved else spot
         sizes = sizes if at_border else [2.0 * size / (_FINE - 1) for size in sizes]
