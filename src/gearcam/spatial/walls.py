@@ -231,7 +231,8 @@ class RollerWall(ABC, ShortRepr):
         negative then. The radius of the worst of them is smaller, and so on down to that of the
         worst place of all: as fast as Newton's method, and from any place.
         """
-        spot, found = self.spread, math.inf
+        best = spot = self.spread
+        found = math.inf
         for _ in range(_FALLS):
             radius = self._radius_at(spot) if math.isfinite(spot.value) else self.cam.widest
             if radius < found:
@@ -239,10 +240,10 @@ class RollerWall(ABC, ShortRepr):
             if radius >= (1.0 - _STEADY) * found:
                 break
             found = radius
-            spot = self.least(lambda contact, radius=found: self._with(contact, radius).spread)
+            spot = self.least(lambda contact, radius=found: self._of_radius(contact, radius).spread)
         return best
 
-    def _with(self, contact: RollerContact, radius: Array | float) -> RollerContact:
+    def _of_radius(self, contact: RollerContact, radius: Array | float) -> RollerContact:
         """Return the contact of a tool of another radius, mm, where it is `at`."""
         shape = self.cam.roller
         own = radius + (contact.x - shape.at) * math.tan(shape.half_angle)
@@ -254,6 +255,6 @@ class RollerWall(ABC, ShortRepr):
         contact = self.contact(np.array([spot.theta]), np.array([[spot.x]]))
         least = np.maximum((shape.at - contact.x) * math.tan(shape.half_angle), 0.0)
         found = bracketed_root(
-            lambda radius: self._with(contact, radius).spread, least, widest, ROOT * widest
+            lambda radius: self._of_radius(contact, radius).spread, least, widest, ROOT * widest
         )
         return float(found[0, 0])
