@@ -19,6 +19,7 @@ from gearcam.gears.outline import Flanks
 from gearcam.gears.rolling import Rolling
 from gearcam.gears.subject import CheckedPair
 from gearcam.gears.track import Frames
+from gearcam.gears.track_table import TabledCentrode
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.perturbation import EPS, Perturb, largest_changes
 from gearcam.numeric.piecewise import Piecewise
@@ -28,6 +29,10 @@ _PLACES: Final = 181
 
 _ROUNDINGS: Final = 4.0 * EPS
 """Relative perturbation of ratios and of the parameters of their pieces."""
+
+
+_OF_PROBES: Final = 1.5
+"""Largest error of a table over those at its probes."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -89,7 +94,22 @@ def pair_errors(subject: CheckedPair) -> tuple[float, float, float]:
         return results
 
     driven, *of_wheels = (float(change.max()) for change in largest_changes(compute))
-    return driven, max(of_wheels[::2]), sum(of_wheels[1::2]) / pair.toothings[0].pitch
+    of_table = max(_off_by_table(gear.toothing, pair.rolling) for gear in subject.gears)
+    ratio = (sum(of_wheels[1::2]) + 2.0 * of_table) / pair.toothings[0].pitch
+    return driven, max(of_wheels[::2]) + of_table, ratio
+
+
+def _off_by_table(toothing: Toothing, rolling: Rolling) -> float:
+    """Return how far the table of a centrode moves points of flanks, mm; 0 without one."""
+    track, exact = toothing.track, rolling.tracks[toothing.wheel - 1]
+    if not isinstance(track, TabledCentrode) or track.source.table is None:
+        return 0.0
+    phi = track.source.table.probes
+    s = exact.arc_length(phi)
+    own, wanted = (
+        _points(one, one.frames(phi), s) for one in (toothing, replace(toothing, track=exact))
+    )
+    return _OF_PROBES * float(np.abs(own - wanted).max())
 
 
 def _perturbed(rolling: Rolling, perturb: Perturb) -> Rolling:

@@ -114,6 +114,12 @@ class TrackTable(NamedTuple):
     arcs: Cells
     angles: Array
 
+    @property
+    def probes(self) -> Array:
+        """A driver angle in each cell, (n,) rad, at which errors are nearly largest."""
+        ends = self.cells.ends
+        return ends[:-1] + _PROBE * np.diff(ends)
+
     def angle(self, s: Array) -> Array:
         """Return the driver angles, rad, at arc lengths, mm, within the first lobe."""
         cell, share = self.arcs.holding(s)
@@ -249,8 +255,7 @@ def missed(rolling: Rolling, table: TrackTable) -> Mask:
     -------
     (n,) mask
     """
-    ends = table.cells.ends
-    x = ends[:-1] + _PROBE * np.diff(ends)
+    x = table.probes
     length = rolling.arc.size * _OF_PLACES
     frames = [(track.frames(x), table.frames(track, x, curved=True)) for track in rolling.tracks]
     off = [np.abs(table.angle(frames[0][0].s) - x) * frames[0][0].speed / length]

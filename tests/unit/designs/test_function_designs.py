@@ -64,9 +64,10 @@ def test_the_wheels_of_a_function_are_those_of_its_text(function: Any) -> None:
     exact = PLACES - 0.6 * np.sin(PLACES), 1.0 - 0.6 * np.cos(PLACES)
     np.testing.assert_allclose(one.law.derivatives(PLACES, 1), exact, rtol=0, atol=2e-15)
     told = one.facts["accuracy.flank_mm"] + two.facts["accuracy.flank_mm"]
-    assert told < 6e-12  # of 60 mm
+    assert told < 1e-11  # of 60 mm
     for mine, known in zip(one.gears, two.gears, strict=True):
-        np.testing.assert_allclose(mine.outline, known.outline, rtol=0.0, atol=told)
+        # vertices may be elsewhere along the curve as well
+        np.testing.assert_allclose(mine.outline, known.outline, rtol=0.0, atol=2.0 * told)
 
 
 def test_an_ellipse_by_its_radius_is_the_ellipse() -> None:
