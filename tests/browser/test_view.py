@@ -115,6 +115,7 @@ def test_a_slider_is_followed_coarsely_and_then_exactly(page: Chrome, file: Path
     before = file.read_text()
     one = slider(page, "law.ratios[1]")
     drawn = 'return document.querySelector("#charts .plot").getAttribute("aria-label")'
+    page.execute_script('document.querySelector("#charts").scrollIntoView()')
     chart = page.execute_script(drawn)
     page.execute_script(
         "for (const value of [0.41, 0.42, 0.43]) { arguments[0].value = value;"
