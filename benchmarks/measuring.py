@@ -104,9 +104,11 @@ def in_turns(functions: dict[str, Callable[[], object]], count: int) -> list[Tim
 def commands(cases: dict[str, Sequence[str]], count: int) -> list[Timing]:
     """Time whole processes, alternately, so that load affects all alike.
 
-    The first round is not timed: it compiles the modules, as an installation does.
+    The first round is not timed: it compiles the modules, as an installation does. All have one
+    thread of linear algebra, as the command itself: idle threads would slow the references down.
     """
     environment = {key: value for key, value in os.environ.items() if key != _UNCOMPILED}
+    environment["OPENBLAS_NUM_THREADS"] = "1"
     samples: dict[str, list[float]] = {name: [] for name in cases}
     for round_number in range(count + 1):
         for name, command in cases.items():

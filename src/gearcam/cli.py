@@ -1,4 +1,4 @@
-"""The command line.
+"""The command line: its commands by name; only what a command needs is imported.
 
 Every command ends with one of the exit codes of `gearcam.commands`. Results go to stdout, errors to
 stderr; a progress bar is drawn on a terminal only.
@@ -10,33 +10,19 @@ import argparse
 import os
 import sys
 import textwrap
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
-from pathlib import Path
-from typing import Final
+from collections.abc import Iterator, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Final
 
-from gearcam.base.errors import Problem, WriteError
+from gearcam.base.errors import WriteError
 from gearcam.base.interrupts import interruptible
+from gearcam.base.kinds import kind_names, kind_studies
 from gearcam.base.registry import deferred
-from gearcam.commands import (
-    EXIT_CODES,
-    GOOD,
-    WRONG,
-    Command,
-    Options,
-    add_output,
-    each_result,
-    fault,
-    interrupted,
-    refuse,
-    study_command,
-)
-from gearcam.console import DEBUG, catalogue_lines, complain, quieten, say, streams
-from gearcam.designs import load
-from gearcam.designs.faults import unknown_word
-from gearcam.designs.kind import all_formats
-from gearcam.designs.outputs import FORMATS
-from gearcam.results.kind import KINDS
+from gearcam.commands import EXIT_CODES, GOOD, WRONG, Command, fault, interrupted, refuse
+from gearcam.console import DEBUG, complain, quieten, say, streams
+
+if TYPE_CHECKING:
+    from gearcam.results.studies import Study
 
 _ABOUT: Final = "Design cams and pairs of non-circular gears from a description of their motion."
 
@@ -84,12 +70,8 @@ def _dispatch(words: list[str]) -> int:
     command = _command(word)
     if command is not None:
         return command.run(vars(_parser(command).parse_intermixed_args(words[1:])))
-    docs = {one.name: one.doc for one in _commands()}
-    top = argparse.ArgumentParser(
-        prog="gearcam",
-        description=_ABOUT,
-        epilog=_help(docs),
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+    top = _Top(
+        prog="gearcam", description=_ABOUT, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     top.add_argument("--version", action="store_true", help="show the version and exit")
     top.add_argument("command", nargs="?", metavar="COMMAND", help="one of the commands below")
@@ -100,7 +82,9 @@ def _dispatch(words: list[str]) -> int:
         say(f"gearcam {__version__}")
         return GOOD
     if options.command is not None:
-        refuse([unknown_word(word, "is not a command", docs)])
+        from gearcam.designs.faults import unknown_word
+
+        refuse([unknown_word(word, "is not a command", [one.name for one in _commands()])])
     top.print_help(sys.stderr)
     return WRONG
 
@@ -108,17 +92,30 @@ def _dispatch(words: list[str]) -> int:
 def _commands() -> Iterator[Command]:
     """Yield the commands: general ones, then those of studies."""
     yield from _COMMANDS
-    for name in sorted({name for kind in KINDS.values() for name in kind.studies}):
-        yield study_command(name)
+    every: dict[str, Study] = {}
+    for kind in kind_names():
+        every = {**kind_studies(kind), **every}  # the first kind describes it
+    yield from (_study_command(every[name]) for name in sorted(every))
 
 
 def _command(word: str) -> Command | None:
     """Return the command of a `word`; None if there is none."""
     # those known here first: only then are other packages asked
-    for kind in KINDS.values() if word not in _GENERAL else ():
-        if word in kind.study_tables:
-            return study_command(word)
+    for one in _COMMANDS:
+        if one.name == word:
+            return one
+    for kind in kind_names():
+        if word in kind_studies(kind).own:
+            return _study_command(kind_studies(kind)[word])
+    if not word or word.startswith("-"):
+        return None
     return next((one for one in _commands() if one.name == word), None)
+
+
+def _study_command(study: Study) -> Command:
+    run = deferred("gearcam.study_commands:run")
+    options = deferred("gearcam.study_commands:add_options")
+    return Command(study.name, study.doc, partial(run, study), partial(options, study))
 
 
 def parsers() -> Iterator[argparse.ArgumentParser]:
@@ -134,8 +131,11 @@ class _Help(argparse.HelpFormatter):
 
     def _get_help_string(self, action: argparse.Action) -> str:
         text = action.help or ""
-        # the formats load all kinds of design
-        return text.replace("{formats}", ", ".join(all_formats())) if "{formats}" in text else text
+        if "{formats}" not in text:
+            return text
+        from gearcam.designs.kind import all_formats  # loads all kinds of design
+
+        return text.replace("{formats}", ", ".join(all_formats()))
 
 
 def _parser(command: Command) -> argparse.ArgumentParser:
@@ -146,117 +146,33 @@ def _parser(command: Command) -> argparse.ArgumentParser:
     return parser
 
 
-def _help(docs: Mapping[str, str]) -> str:
-    commands = [f"  {name:<10}{doc}" for name, doc in docs.items()]
-    codes = [f"  {code:<10}{meaning}" for code, meaning in EXIT_CODES.items()]
-    more = "DIR is the output folder, NAME the name of the design."
-    more += "\ngearcam COMMAND --help explains the options of a command."
-    return "\n".join(["commands:", *commands, "", more, "", "exit codes:", *codes])
+class _Top(argparse.ArgumentParser):
+    """The parser of the command line, whose help lists the commands."""
+
+    def format_help(self) -> str:
+        commands = [f"  {one.name:<10}{one.doc}" for one in _commands()]
+        codes = [f"  {code:<10}{meaning}" for code, meaning in EXIT_CODES.items()]
+        more = "DIR is the output folder, NAME the name of the design."
+        more += "\ngearcam COMMAND --help explains the options of a command."
+        self.epilog = "\n".join(["commands:", *commands, "", more, "", "exit codes:", *codes])
+        return super().format_help()
 
 
-# --- general commands ----------------------------------------------------------------------------
-
-
-def _add_files(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("files", nargs="+", metavar="FILE", help="design files (TOML)")
-    add_output(parser)
-
-
-def _build_arguments(parser: argparse.ArgumentParser) -> None:
-    _add_files(parser)
-    words = "write these files instead of output.files: {formats}"
-    parser.add_argument("--only", action="append", metavar="A,B,...", help=words)
-
-
-def _build(options: Options) -> int:
-    output, formats = options["output"], _formats(options["only"])
-    return each_result(
-        options["files"],
-        load,
-        "built",
-        lambda result, progress: result.write(output, formats, progress),
-        debug=options["debug"],
-    )
-
-
-def _formats(only: list[str] | None) -> tuple[str, ...] | None:
-    """Return the formats listed by ``--only``; None without the option."""
-    if only is None:
-        return None
-    formats = [word.strip() for words in only for word in words.split(",") if word.strip()]
-    if not formats:
-        refuse([Problem("the list is empty", key="--only", allowed=", ".join(all_formats()))])
-    unknown = [name for name in formats if name not in FORMATS and name not in all_formats()]
-    if unknown:
-        words = "is not a file format"
-        refuse([unknown_word(name, words, all_formats(), "--only") for name in unknown])
-    return tuple(dict.fromkeys(formats))
-
-
-def _check(options: Options) -> int:
-    return each_result(
-        options["files"],
-        load,
-        "checked",
-        lambda result, _: result.check(options["output"]),
-        debug=options["debug"],
-    )
-
-
-def _laws(_: Options) -> int:
-    from gearcam.designs.listing import law_groups, sources_of
-
-    groups = list(law_groups())
-    say("\n".join(catalogue_lines(groups, sources_of(groups))))
-    return GOOD
-
-
-def _new_arguments(parser: argparse.ArgumentParser) -> None:
-    words = f"kind of design: {' or '.join(KINDS)}"
-    parser.add_argument("kind", metavar="KIND", help=words)
-    parser.add_argument("file", nargs="?", metavar="FILE", help="default: stdout")
-    words = "preset backlash, clearance, kerf and tool for printing, laser, wire or milling"
-    parser.add_argument("--for", dest="process", metavar="PROCESS", help=words)
-
-
-def _new(options: Options) -> int:
-    from gearcam.designs.template import process_problem, template, template_hint
-    from gearcam.export.write import write_new
-
-    kind, file, process = options["kind"], options["file"], options["process"]
-    if kind not in KINDS:
-        problem = unknown_word(kind, "is not a kind of design", KINDS, "KIND")
-        refuse([replace(problem, hint=template_hint(kind))])
-    if process is not None and (problem := process_problem(kind, process)):
-        refuse([problem])
-    text = template(kind, Path(file or "").stem, process or "")
-    if file is None:
-        say(text.rstrip("\n"))
-        return GOOD
-    import shlex
-
-    write_new(file, text)
-    say(f"{file}: written; build it with: gearcam build {shlex.quote(file)}")
-    return GOOD
-
-
-def _schema(_: Options) -> int:
-    import json
-
-    from gearcam.designs.schema import schema
-
-    say(json.dumps(schema(), indent=2))
-    return GOOD
-
+_GENERAL: Final = "gearcam.general_commands"
 
 _COMMANDS: Final = (
     Command(
         "build",
         "Build designs and write their files into DIR/NAME/.",
-        _build,
-        _build_arguments,
+        deferred(f"{_GENERAL}:build"),
+        deferred(f"{_GENERAL}:build_options"),
     ),
-    Command("check", "Check designs; write DIR/NAME/summary.json only.", _check, _add_files),
+    Command(
+        "check",
+        "Check designs; write DIR/NAME/summary.json only.",
+        deferred(f"{_GENERAL}:check"),
+        deferred(f"{_GENERAL}:add_files"),
+    ),
     Command(
         "compare",
         "Compare designs or variants of one design; write DIR/compare.html.",
@@ -284,16 +200,17 @@ _COMMANDS: Final = (
     Command(
         "laws",
         "List transmission-ratio laws and motion laws with keys, continuity and source.",
-        _laws,
+        deferred(f"{_GENERAL}:laws"),
     ),
     Command(
         "new",
         "Create a commented design file to start from; never overwrites a file.",
-        _new,
-        _new_arguments,
+        deferred(f"{_GENERAL}:new"),
+        deferred(f"{_GENERAL}:new_options"),
     ),
-    Command("schema", "Print the JSON Schema of design files, for use in editors.", _schema),
+    Command(
+        "schema",
+        "Print the JSON Schema of design files, for use in editors.",
+        deferred(f"{_GENERAL}:schema"),
+    ),
 )
-
-_GENERAL: Final = frozenset(one.name for one in _COMMANDS)
-"""Names of the general commands."""

@@ -11,12 +11,10 @@ import textwrap
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 from gearcam import build, remedies
 from gearcam.base.errors import DesignError, InfeasibleError, MissingExtraError, Problem, WriteError
-from gearcam.base.quantities import FILE_KEYS, unit_of
 from gearcam.console import (
     DEBUG,
     all_lines,
@@ -28,9 +26,6 @@ from gearcam.console import (
     remedy_lines,
     say,
 )
-from gearcam.designs import Design, load
-from gearcam.designs.kind import as_written
-from gearcam.results.kind import KINDS, Kind, Study
 
 if TYPE_CHECKING:
     from gearcam.results.result import Result
@@ -96,146 +91,6 @@ def refuse(problems: Sequence[Problem]) -> NoReturn:
     for problem in problems:
         complain(problem_text(problem))
     raise SystemExit(WRONG)
-
-
-# --- studies -------------------------------------------------------------------------------------
-
-
-def study_command(name: str) -> Command:
-    """Return the command of the study of a `name`, with the options of each kind that has it."""
-    having = (kind for kind in KINDS.values() if name in kind.study_tables)
-    kinds = [next(having)]
-    study = kinds[0].studies[name]
-    kinds += [] if study.alike else having
-
-    def arguments(parser: argparse.ArgumentParser) -> None:
-        number = "+" if study.many else None
-        parser.add_argument("designs", nargs=number, metavar="FILE", help="design file (TOML)")
-        add_output(parser)
-        for kind in kinds:
-            kind.titles_with([study.table])  # it may be of another package
-        told, taken = _told(study.table, kinds), set[str]()
-        for kind in kinds:
-            _add_settings(kind.studies[name], kind, parser, told, taken)
-
-    def run(options: Options) -> int:
-        settings = dict(options)
-        files = settings.pop("designs")
-        output, debug = settings.pop("output"), settings.pop("debug")
-        return each_result(
-            files if study.many else [files],
-            lambda file: studied(study, load(file), settings),
-            study.done,
-            lambda result, progress: result.study(study.name, progress).write(output),
-            debug=debug,
-        )
-
-    return Command(study.name, study.doc, run, arguments)
-
-
-def _told(table: str, kinds: Sequence[Kind]) -> dict[str, str]:
-    """Return what each key of a table means, and of which kinds where not of all alike."""
-    meant: dict[str, dict[str, list[str]]] = {}
-    for kind in kinds:
-        for key, entry in kind.table(table).entries.items():
-            meant.setdefault(key, {}).setdefault(entry.param.doc, []).append(kind.name)
-    return {
-        key: "; ".join(
-            doc if len(names) == len(kinds) else f"{' or '.join(names)}: {doc}"
-            for doc, names in docs.items()
-        )
-        for key, docs in meant.items()
-    }
-
-
-def _add_settings(
-    study: Study,
-    kind: Kind,
-    parser: argparse.ArgumentParser,
-    told: Mapping[str, str],
-    taken: set[str],
-) -> None:
-    """Add an option for each key of a study's settings, which it overrides, to a `parser`.
-
-    Each is `told` as it is; those that are `taken` it has already, of another kind.
-    """
-    for key, entry in kind.table(study.table).entries.items():
-        if key in taken:
-            continue
-        taken.add(key)
-        words: dict[str, Any] = {"help": told[key]}
-        if key == study.argument:
-            parser.add_argument(key, metavar=study.metavar or key.upper(), **words)
-            continue
-        unit = entry.param.quantity.unit.upper()
-        if entry.length is not None:
-            example = "1,27,..." if entry.base is int else "A,B,..."
-            read = partial(_list, entry.base, both=entry.param.both)
-            words |= {"type": read, "metavar": example}
-        elif entry.base is bool:
-            words |= {"action": "store_true", "default": None}
-        else:
-            name = "FILE" if key in FILE_KEYS else "N" if entry.base is int else "KEY"
-            words |= {"type": entry.base, "metavar": unit or name}
-        plain = key.removesuffix(entry.param.quantity.suffix).replace("_", "-")
-        name = study.options.get(key, plain)
-        parser.add_argument(f"--{name}", dest=key, **words)
-    for name, key in study.elsewhere.items():
-        if name in taken:
-            continue
-        taken.add(name)
-        unit = unit_of(key).upper()
-        words = {"type": float, "metavar": unit, "help": f"another {key}"}
-        parser.add_argument(f"--{name}", dest=f"--{name}", **words)
-
-
-def _list(base: type, text: str, *, both: bool) -> Any:
-    """Return the numbers of a list; a single number alone if it may stand for both wheels."""
-    try:
-        numbers = [base(word.strip()) for word in text.split(",") if word.strip()]
-    except ValueError:
-        raise argparse.ArgumentTypeError(f'"{text}" is not a list such as 1,27') from None
-    return numbers[0] if both and len(numbers) == 1 else numbers
-
-
-def studied(study: Study, design: Design, options: Options) -> Any:
-    """Return the design of a study's command, with the given settings.
-
-    Parameters
-    ----------
-    study : Study
-        The study.
-    design : Design
-        The design read from a file.
-    options : mapping of str to value
-        Settings by key; None where not given.
-
-    Returns
-    -------
-    Design
-        Of the same kind.
-
-    Raises
-    ------
-    DesignError
-        If designs of this kind have no such study, or a value is not allowed.
-    """
-    known = KINDS[design.kind].studies
-    if study.name not in known:
-        kinds = [kind for kind in KINDS.values() if study.name in kind.studies]
-        own = as_written(KINDS[design.kind])
-        message = f"this command is for designs of {' or '.join(map(as_written, kinds))}"
-        message += f", not for {own}" if " with " in own else ""
-        raise DesignError([Problem(message, file=design.source, key="kind", value=design.kind)])
-    own = known[study.name].elsewhere
-    given = {key: one for key, one in options.items() if one is not None}
-    settings = {own.get(key[2:], f"{study.table}.{key}"): one for key, one in given.items()}
-    changed = design.with_(settings) if settings else design
-    known[study.name].demand(changed)
-    return changed
-
-
-# --- files ---------------------------------------------------------------------------------------
 
 
 def each_result(

@@ -16,10 +16,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, TextIO
 
-from gearcam.base.errors import DesignError, InfeasibleError, Problem, WriteError
+from gearcam.base.errors import MOST_LISTED, DesignError, InfeasibleError, Problem, WriteError
 from gearcam.base.facts import lined_up
 from gearcam.base.numerals import size_of
-from gearcam.designs.slips import MOST_LISTED
 
 if TYPE_CHECKING:
     from gearcam.base.findings import Finding

@@ -186,21 +186,34 @@ def modules(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., frozenset
     @cache
     def loaded(profile: str, files: str) -> frozenset[str]:
         folder = tmp_path_factory.mktemp(profile)
-        words = f"profiles/{profile}.toml", "--only", files, "-o", str(folder)
-        done = subprocess.run(
-            [sys.executable, "-c", LOADED, "build", *words],
-            cwd=rules.ROOT,
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-        assert done.returncode == 0, done.stderr
-        answer = json.loads(done.stdout.splitlines()[-1])
-        assert answer["code"] == 0, done.stdout + done.stderr
+        found = _loaded("build", f"profiles/{profile}.toml", "--only", files, "-o", str(folder))
         assert list((folder / profile).glob(f"*.{files}"))
-        return frozenset(answer["modules"])
+        return found
 
     return loaded
+
+
+def _loaded(*words: str) -> frozenset[str]:
+    """Return the names of all modules that a command loads in a process of its own."""
+    done = subprocess.run(
+        [sys.executable, "-c", LOADED, *words],
+        cwd=rules.ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    answer = json.loads(done.stdout.splitlines()[-1])
+    assert answer["code"] == 0, done.stdout + done.stderr
+    return frozenset(answer["modules"])
+
+
+@pytest.mark.parametrize("word", ["--version", "--help"])
+def test_version_and_help_need_no_kind_of_design(word: str) -> None:
+    loaded = _loaded(word)
+    assert loaded.isdisjoint({"numpy", "rich", "gearcam.designs", "gearcam.results.kind"})
+    assert not [name for name in loaded if re.match(r"gearcam\.kinds\.\w+\.", name)]
+    assert word != "--version" or "importlib.metadata" not in loaded
 
 
 def test_a_csv_build_loads_no_other_writer(modules: Callable[..., frozenset[str]]) -> None:

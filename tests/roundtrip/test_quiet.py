@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from gearcam import cli
+from gearcam import general_commands
 from gearcam.cli import main
 from gearcam.commands import FINDINGS, GOOD
 from gearcam.designs import load
@@ -26,13 +26,13 @@ STEP = ",step" if find_spec("OCP") else ""
 PLANTED = """
 import logging, sys, warnings
 import numpy as np
-from gearcam import cli, console
+from gearcam import cli, console, general_commands
 def noisy(*_):
     warnings.warn("a library is cross", UserWarning)
     np.array([1.0]) / 0.0
     logging.getLogger("ezdxf").warning("a library is cross")
     raise KeyError("an error")
-cli.load = noisy
+general_commands.load = noisy
 sys.argv = ["gearcam", *sys.argv[1:]]
 sys.exit(cli.main())
 """
@@ -117,7 +117,7 @@ def test_a_noise_is_heard(
         logging.getLogger("ezdxf").warning("a library is cross")
         return load(*given)
 
-    monkeypatch.setattr(cli, "load", noisy)
+    monkeypatch.setattr(general_commands, "load", noisy)
     with pytest.raises(AssertionError, match="a library is cross"):
         strictly("check", str(PROFILES / "eccentric_cam.toml"))
 

@@ -7,8 +7,9 @@
   of internal computations; `numerals`: how numbers are printed and written into files.
 - `facts`: the quantities of a result as a tree; `changes`: values of a change between two ends.
 - `display`: objects as one line of text or, in notebooks, as a picture with facts.
-- `registry`: entries that are loaded when they are used; `reading`: files read whole and within
-  limits; `interrupts`: signals, and code that they must not interrupt.
+- `registry`: entries that are loaded when they are used; `kinds`: names and studies of the kinds of
+  design; `reading`: files read whole and within limits; `interrupts`: signals, and code that they
+  must not interrupt.
 
 Depends on no other package.
 """

@@ -3,7 +3,7 @@
     [project.entry-points."gearcam.ratio_laws"]        a `LawEntry` of `gearcam.laws.ratio`
     [project.entry-points."gearcam.motion_laws"]       a `LawEntry` of `gearcam.laws.motion`
     [project.entry-points."gearcam.gear_pair.formats"]    a `FileMaker` of `gearcam.results.kind`
-    [project.entry-points."gearcam.gear_pair.studies"]    a `Study` with its ``settings``
+    [project.entry-points."gearcam.gear_pair.studies"]    a `Study` of `gearcam.results`
     [project.entry-points."gearcam.mechanism.parts"]      a `MachinePart` or `MachineAction`
 
 Formats and studies are those of one kind of design, here of gear pairs. Names known here come

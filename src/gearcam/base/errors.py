@@ -18,10 +18,13 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, Final
 
 from gearcam.base.adjustments import Adjustment
 from gearcam.base.numerals import SHORT, told_apart
+
+MOST_LISTED: Final = 100
+"""Largest number of problems of a file that are listed."""
 
 
 class GearcamError(Exception):

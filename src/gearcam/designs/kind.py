@@ -1,19 +1,18 @@
 """The kinds of design: how a design of each kind is read, and the outcome of validating one.
 
-Each kind is a folder of the package `gearcam.kinds`, found by its name; its module `design` has its
-``KIND``. No other code names a kind, and only the kind of the design at hand is imported. What a
-kind does beside reading (results, files, charts, studies) is in `gearcam.results.kind.Kind`.
+Each kind is a folder of the package `gearcam.kinds` (`gearcam.base.kinds`); its module `design` has
+its ``KIND``. No other code names a kind, and only the kind of the design at hand is imported. What
+a kind does beside reading (results, files, charts) is in `gearcam.results.kind.Kind`.
 """
 
 from __future__ import annotations
 
 import importlib
 import math
-import pkgutil
 import sys
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cache, cached_property
+from functools import cached_property
 from inspect import get_annotations
 from types import SimpleNamespace
 from typing import Any, Final, Protocol, get_args, get_type_hints
@@ -21,6 +20,7 @@ from typing import Any, Final, Protocol, get_args, get_type_hints
 from gearcam.base.brought import brought, group_of, load_brought
 from gearcam.base.display import cut
 from gearcam.base.findings import CHECKS
+from gearcam.base.kinds import folder_of, kind_names, kind_studies
 from gearcam.base.quantities import params_of
 from gearcam.base.registry import ExtensibleMapping
 from gearcam.base.rules import Rule
@@ -29,8 +29,6 @@ from gearcam.designs.lines import Path
 from gearcam.designs.nodes import Circumstances, Keys, Many, Node, choices_in, tables_in
 from gearcam.designs.slips import cam_of, keyed, nearest
 from gearcam.designs.table import Key, Table, table_of
-
-_HOME: Final = "gearcam.kinds"
 
 
 @dataclass
@@ -174,8 +172,6 @@ class DesignKind:
         ``circumstances(document)`` returns what the units of its keys depend on.
     variants : Variants, optional
         What decides on the keys of some tables.
-    studies : mapping of str to Study
-        Studies by name; each is a command, too (see `gearcam.results.kind`).
     required : tuple of str
         Titles of tables that a file must have.
     rules : tuple of Rule
@@ -210,7 +206,6 @@ class DesignKind:
     nodes: Mapping[str, Node] = field(default_factory=dict)
     circumstances: Callable[[Mapping[str, Any]], Circumstances] = lambda _: {}
     variants: Variants | None = None
-    studies: ExtensibleMapping[Any] = field(default_factory=ExtensibleMapping)
     required: tuple[str, ...]
     rules: tuple[Rule, ...] = ()
     problems: Callable[[Mapping[str, Any], Examined], Iterable[Fault]] = lambda *_: ()
@@ -225,6 +220,11 @@ class DesignKind:
 
     def __repr__(self) -> str:
         return f'<{type(self).__name__} "{self.name}">'
+
+    @property
+    def studies(self) -> ExtensibleMapping[Any]:
+        """Its studies by name; each is a command, too (see `gearcam.results.studies`)."""
+        return kind_studies(self.name)
 
     @cached_property
     def added(self) -> dict[str, Any]:
@@ -426,18 +426,18 @@ class _Kinds(Mapping[str, DesignKind]):
     """The kinds by name, each imported when it is used."""
 
     def __iter__(self) -> Iterator[str]:
-        return iter(_names())
+        return iter(kind_names())
 
     def __len__(self) -> int:
-        return len(_names())
+        return len(kind_names())
 
     def __contains__(self, name: object) -> bool:
-        return name in _names()
+        return name in kind_names()
 
     def __getitem__(self, name: str) -> DesignKind:
-        if name not in _names():
+        if name not in kind_names():
             raise KeyError(name)
-        return importlib.import_module(f"{_package(name)}.design").KIND
+        return importlib.import_module(f"{folder_of(name)}.design").KIND
 
 
 KINDS: Final[Mapping[str, DesignKind]] = _Kinds()
@@ -522,18 +522,3 @@ def kind_meant(word: str) -> tuple[DesignKind, str] | None:
 def all_formats() -> tuple[str, ...]:
     """Return the formats of files of all kinds of design."""
     return tuple(dict.fromkeys(name for kind in KINDS.values() for name in kind.formats))
-
-
-def _names() -> tuple[str, ...]:
-    return _folders(tuple(importlib.import_module(_HOME).__path__))
-
-
-@cache
-def _folders(path: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the names of the kinds that have a folder on a `path` of packages."""
-    found = (one.name for one in pkgutil.iter_modules(path) if one.ispkg)
-    return tuple(name.replace("_", "-") for name in sorted(found))
-
-
-def _package(name: str) -> str:
-    return f"{_HOME}.{name.replace('-', '_')}"

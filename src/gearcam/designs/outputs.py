@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any, Final
 
 from gearcam.base.brought import Words, group_of
 from gearcam.base.display import ShortRepr
+from gearcam.base.kinds import kind_studies
 from gearcam.base.quantities import ANGLE, FINEST, LENGTH, TEXT, allowance, param
 from gearcam.base.rules import distinct, excluded
 
@@ -30,9 +30,9 @@ def files_param(formats: tuple[str, ...], kind: str) -> Any:
     return param(TEXT, default=("csv",), choices=words, doc=_FILES)
 
 
-def studies_param(studies: Collection[str]) -> Any:
-    """Return the field of the studies to include, any of those of a kind."""
-    return param(TEXT, default=(), choices=studies, doc=_STUDIES)
+def studies_param(kind: str = "") -> Any:
+    """Return the field of the studies to include, any of those of a `kind`, if it is given."""
+    return param(TEXT, default=(), choices=kind_studies(kind) if kind else (), doc=_STUDIES)
 
 
 def pose_param(word: str, doc: str) -> Any:
@@ -59,7 +59,7 @@ class OutputSpec(ShortRepr):
     """
 
     files: tuple[str, ...] = param(TEXT, default=("csv",), choices=FORMATS, doc=_FILES)
-    studies: tuple[str, ...] = studies_param(())
+    studies: tuple[str, ...] = studies_param()
     chord_tolerance: float | None = param(
         LENGTH,
         default=None,

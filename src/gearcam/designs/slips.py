@@ -13,13 +13,11 @@ from functools import lru_cache
 from itertools import islice
 from typing import Any, Final
 
+from gearcam.base.errors import MOST_LISTED
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import ANGLE, LENGTH
 from gearcam.base.units import factor, like
 from gearcam.designs.table import Key
-
-MOST_LISTED: Final = 100
-"""Largest number of problems of a file that are listed."""
 
 STRONG: Final = 0.75
 """Similarity from which a key is suggested rather than the same key of another table, and from

@@ -8,11 +8,11 @@ from functools import partial
 from itertools import islice
 from typing import Any
 
+from gearcam.base.errors import MOST_LISTED
 from gearcam.base.rules import Breach, Rule, Value
 from gearcam.designs.faults import Fault, allowed, list_fault, short, show, value_fault
 from gearcam.designs.lines import Path
 from gearcam.designs.slips import (
-    MOST_LISTED,
     STRONG,
     hinted,
     key_hint,

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -14,10 +14,8 @@ from gearcam.base.display import ShortRepr
 from gearcam.base.errors import ABOVE, beyond_limit
 from gearcam.base.facts import Fact, extent
 from gearcam.base.quantities import ANGLE, COUNT, TEXT, fixed, param
-from gearcam.base.registry import deferred
 from gearcam.base.rules import Breach, distinct
 from gearcam.designs.outputs import OutputSpec, pose_param
-from gearcam.results.kind import Study
 
 if TYPE_CHECKING:
     from gearcam.designs.design import Design
@@ -86,45 +84,6 @@ class AccuracySpec(ShortRepr):
 
 METHODS: Final = ("random", "nsga2", "tpe", "scipy")
 """How `gearcam optimize` may search."""
-
-
-def forces_study(compute: str) -> Study:
-    """Return the study of the forces of a cam, by what computes it, as `deferred` names it."""
-    return Study(
-        name="forces",
-        key="forces",
-        doc="Compute forces, torque, efficiency and contact pressure; write DIR/NAME/forces.csv.",
-        done="computed",
-        table="forces",
-        compute=deferred(compute),
-        demand=deferred("gearcam.kinds.under_load:demand"),
-    )
-
-
-def dynamics_study(compute: str, demand: str, *, speed: str, **more: Any) -> Study:
-    """Return the study of what is in motion: a machine, teeth, a follower.
-
-    Parameters
-    ----------
-    compute, demand : str
-        What computes it, and what refuses designs without it, as `deferred` names them.
-    speed : str
-        Dotted key of the speed of the driver.
-    **more
-        What else its entry has (see `Study`).
-    """
-    return Study(
-        name="dynamics",
-        key="dynamics",
-        doc="Compute a machine, teeth or a follower in motion; write DIR/NAME/dynamics.csv.",
-        done="computed",
-        table="dynamics",
-        compute=deferred(compute),
-        demand=deferred(demand),
-        alike=False,
-        elsewhere={"speed": speed},
-        **more,
-    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -279,13 +238,38 @@ def solved_file(design: Design) -> dict[str, bytes]:
 
 
 @cache
-def _demand(design: Design) -> None:
+def demand_stages(design: Design) -> None:
+    """Refuse stages that the kind of a `design` does not have.
+
+    Raises
+    ------
+    DesignError
+        With those that it has.
+    """
     from gearcam.results.accuracy import stages_of
 
     stages_of(design, design.accuracy.stage)  # pyright: ignore[reportAttributeAccessIssue]
 
 
-def _measure(result: Result, progress: Progress) -> StudyResult:
+def study_accuracy(result: Result, progress: Progress) -> StudyResult:
+    """Return error against run time of a result's stages (see `gearcam.results.accuracy`).
+
+    Parameters
+    ----------
+    result : Result
+        The result.
+    progress : callable
+        Told of the levels done and their number.
+
+    Returns
+    -------
+    StudyResult
+
+    Raises
+    ------
+    InfeasibleError
+        If a stage cannot be made.
+    """
     from gearcam.report.page import charts_page
     from gearcam.results.accuracy import accuracy
     from gearcam.results.study import StudyResult
@@ -304,19 +288,6 @@ def _measure(result: Result, progress: Progress) -> StudyResult:
         pages={PAGE: charts_page(title, outcome.charts, "\n".join(lines))},
         lines=lines,
     )
-
-
-ACCURACY: Final = Study(
-    name="accuracy",
-    key="convergence",
-    doc="Measure accuracy against run time; write DIR/NAME/accuracy.csv and accuracy.html.",
-    done="measured",
-    table="accuracy",
-    compute=_measure,
-    demand=_demand,
-    many=False,
-)
-"""The study of error against run time (see `gearcam.results.accuracy`)."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,6 +1,6 @@
 """Results: everything computed from a design on demand, its files, studies and remedies.
 
-- `kind`: what a kind of design and a study are.
+- `kind`: what a kind of design is; `studies`: what it says of its studies.
 - `staged`: a design with its stages, which are timed; `study`: the outcome of a study; `result`:
   facts, charts and files of a design and its studies; `parts`: drawings and solids of designs of
   which parts are made; `nested`: refusals and findings of a design within another; `table_rows`:

@@ -15,8 +15,8 @@ from gearcam.base.facts import Facts
 from gearcam.base.findings import Finding, in_order
 from gearcam.base.pickling import pickled
 from gearcam.numeric.columns import Columns
-from gearcam.results.kind import Study
 from gearcam.results.staged import Staged
+from gearcam.results.studies import Study
 from gearcam.results.written import BuildOutput
 
 if TYPE_CHECKING:

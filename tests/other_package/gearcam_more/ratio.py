@@ -9,8 +9,8 @@ import numpy as np
 
 from gearcam.base.facts import Fact
 from gearcam.base.quantities import COUNT, param
-from gearcam.results.kind import Study
 from gearcam.results.result import StudyResult
+from gearcam.results.studies import Study
 
 
 def ratio_text(result: Any, _: dict[str, Any]) -> dict[str, bytes]:

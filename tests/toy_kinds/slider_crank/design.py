@@ -19,7 +19,6 @@ from gearcam.base.errors import InfeasibleError
 from gearcam.base.facts import Fact, Facts, extent
 from gearcam.base.findings import Finding, in_order
 from gearcam.base.quantities import ANGLE, LENGTH, nested, param
-from gearcam.base.registry import deferred
 from gearcam.base.rules import exactly_one
 from gearcam.designs.design import Design
 from gearcam.designs.outputs import OutputSpec, files_param, studies_param
@@ -30,26 +29,13 @@ from gearcam.pictures.charts import Chart, Line
 from gearcam.pictures.drawings import CENTER, FOLLOWER, Cross, Feature, Path
 from gearcam.pictures.scenes import PLACES, MovingBody, Scene, still
 from gearcam.report.file import report_files
-from gearcam.results.kind import Kind, Study, studies_of
+from gearcam.results.kind import Kind
 from gearcam.results.nested import placed, within
 from gearcam.results.result import Result, StudyResult
 
 FORMATS = ("csv", "report")
 STEEPEST = 45.0
 """Angle between rod and guide from which a finding warns, deg."""
-
-
-STUDIES = studies_of(
-    "slider-crank",
-    Study(
-        name="slide",
-        key="stroke",
-        doc="Compute the slider's motion.",
-        done="computed",
-        table="stroke",
-        compute=deferred("gearcam.kinds.slider_crank.design:_stroke"),
-    ),
-)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,7 +74,7 @@ class StrokeSpec:
 @dataclass(frozen=True, kw_only=True)
 class SliderOutput(OutputSpec):
     files: tuple[str, ...] = files_param(FORMATS, "slider-crank")
-    studies: tuple[str, ...] = studies_param(STUDIES)
+    studies: tuple[str, ...] = studies_param("slider-crank")
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -309,5 +295,4 @@ KIND = Kind(
     },
     charts={"motion": motion_chart},
     scene=scene,
-    studies=STUDIES,
 )

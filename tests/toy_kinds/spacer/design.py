@@ -13,28 +13,14 @@ from gearcam.base.errors import InfeasibleError
 from gearcam.base.facts import Fact, Facts
 from gearcam.base.findings import Finding
 from gearcam.base.quantities import LENGTH, NUMBER, param
-from gearcam.base.registry import deferred
 from gearcam.designs.design import Design
 from gearcam.designs.outputs import OutputSpec, files_param, studies_param
 from gearcam.export.table import outline_bytes
 from gearcam.pictures.charts import Chart, Line
-from gearcam.results.kind import Kind, Study, studies_of
+from gearcam.results.kind import Kind
 from gearcam.results.result import Result, StudyResult
 
 FORMATS = ("csv", "outline-txt")
-
-
-STUDIES = studies_of(
-    "spacer",
-    Study(
-        name="weigh",
-        key="weight",
-        doc="Weigh a spacer.",
-        done="weighed",
-        table="weight",
-        compute=deferred("gearcam.kinds.spacer.design:_weigh"),
-    ),
-)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,7 +37,7 @@ class WeightSpec:
 @dataclass(frozen=True, kw_only=True)
 class SpacerOutput(OutputSpec):
     files: tuple[str, ...] = files_param(FORMATS, "spacer")
-    studies: tuple[str, ...] = studies_param(STUDIES)
+    studies: tuple[str, ...] = studies_param("spacer")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -135,5 +121,4 @@ KIND = Kind(
     example={"ring": {"bore_mm": 20}},
     facts=facts,
     files=FILES,
-    studies=STUDIES,
 )

@@ -12,7 +12,6 @@ import pytest
 import gearcam
 from gearcam.base.errors import DesignError
 from gearcam.cli import main
-from gearcam.commands import studied
 from gearcam.designs import loads
 from gearcam.gears.contact import FlankPairs
 from gearcam.kinds.gear_pair.design import GearPairDesign
@@ -21,6 +20,7 @@ from gearcam.meshing import study as room
 from gearcam.meshing.contact import Contacts
 from gearcam.numeric.arrays import Array
 from gearcam.results.kind import KINDS
+from gearcam.study_commands import studied
 
 TEXT = """
 kind = "gear-pair"

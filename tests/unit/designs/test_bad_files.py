@@ -13,11 +13,10 @@ from types import FrameType
 import pytest
 
 import gearcam
-from gearcam.base.errors import DesignError
+from gearcam.base.errors import MOST_LISTED, DesignError
 from gearcam.base.reading import UnreadableError, read
 from gearcam.cli import main
 from gearcam.designs import loads, reader
-from gearcam.designs.slips import MOST_LISTED
 from gearcam.laws import columns
 from helpers_interrupts import PAIR
 

@@ -14,7 +14,8 @@ import pytest
 import gearcam
 from gearcam.base.errors import DesignError
 from gearcam.cli import main
-from gearcam.results.kind import KINDS, Study
+from gearcam.results.kind import KINDS
+from gearcam.results.studies import Study
 
 PROFILES = Path(__file__).parents[3] / "profiles"
 CENTER = {"meshing.center_distance_mm": 42.2, "meshing.steps": 96}

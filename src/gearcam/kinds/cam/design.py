@@ -34,7 +34,6 @@ from gearcam.kinds.cam.polydyne import polydyne_faults
 from gearcam.kinds.cam.tables import (
     GOALS,
     NAME,
-    STUDIES,
     BoundsSpec,
     CamBlank,
     CamOutputSpec,
@@ -360,7 +359,6 @@ KIND: Final = Kind(
     charts=DeferredMapping(f"{_HERE}.drawn:CHARTS"),
     scene=deferred(f"{_HERE}.drawn:scene"),
     advice=deferred(f"{_HERE}.hints:CamAdvice"),
-    studies=STUDIES,
     ladders=DeferredMapping(f"{_HERE}.ladders:LADDERS"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
 )

@@ -27,53 +27,15 @@ from gearcam.base.quantities import (
     params_of,
     positive_length,
 )
-from gearcam.base.registry import deferred
 from gearcam.base.rules import Breach, needs
 from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, pose_param, studies_param
 from gearcam.dynamics.integrate import METHODS
-from gearcam.kinds.shared import ACCURACY, dynamics_study, forces_study
 from gearcam.parts.blank import OPENING_RULES, WheelBlank, least_metal, widening_rules
-from gearcam.results.kind import Study, studies_of
 
 NAME: Final = "cam"
 """As in a file."""
 
 _HERE: Final = "gearcam.kinds.cam"
-
-STUDIES: Final = studies_of(
-    NAME,
-    Study(
-        name="follow",
-        key="followed",
-        doc="Compute the follower motion on a given profile; write DIR/NAME/followed.csv. With "
-        "--fit find the design that moves like this; write DIR/NAME/fitted.toml too.",
-        done="followed",
-        table="follow",
-        compute=deferred(f"{_HERE}.given_profile:study_follow"),
-        argument="file",
-        metavar="PROFILE",
-        demand=deferred(f"{_HERE}.given_profile:demand"),
-        many=False,
-    ),
-    forces_study(f"{_HERE}.forces:study_forces"),
-    dynamics_study(
-        f"{_HERE}.dynamics:study_dynamics",
-        f"{_HERE}.moving:demand",
-        speed="drive.speed_rpm",
-        options={"stiffness_n_mm": "train-stiffness", "stiffness_nm_rad": "swing-stiffness"},
-    ),
-    Study(
-        name="precision",
-        key="precision",
-        doc="Compute how errors of sizes move the follower; write DIR/NAME/precision.csv.",
-        done="studied",
-        table="precision",
-        options={"lift_error_deg": "swing-error"},
-        compute=deferred(f"{_HERE}.precision:study_precision"),
-    ),
-    ACCURACY,
-)
-"""The studies by name."""
 
 CAM_FORMATS: Final = (*FORMATS, "tool-path", "curvature")
 """What ``output.files`` of a cam may list."""
@@ -347,7 +309,7 @@ class CamOutputSpec(OutputSpec):
     """
 
     files: tuple[str, ...] = files_param(CAM_FORMATS, NAME)
-    studies: tuple[str, ...] = studies_param(STUDIES)
+    studies: tuple[str, ...] = studies_param(NAME)
     chord_tolerance: float | None = param(
         LENGTH,
         default=None,

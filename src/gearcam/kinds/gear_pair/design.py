@@ -20,7 +20,7 @@ from gearcam.dynamics.settings import DYNAMICS, VIBRATION, PairDynamicsSpec
 from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.gears.subject import KIND as TEETH
 from gearcam.kinds.gear_pair.load_settings import StressSpec
-from gearcam.kinds.shared import ACCURACY, AccuracySpec, ForcesSpec, GoalSpec, dynamics_study
+from gearcam.kinds.shared import AccuracySpec, ForcesSpec, GoalSpec
 from gearcam.laws.ratio import LAWS
 from gearcam.mechanics.drive import DriveSpec
 from gearcam.mechanics.friction import WheelFrictionSpec
@@ -38,60 +38,12 @@ from gearcam.meshing.settings import (
 from gearcam.meshing.settings import KIND as MESHING
 from gearcam.parts.blank import KIND as PARTS
 from gearcam.parts.blank import Blank, serving
-from gearcam.results.kind import Kind, Study, studies_of
+from gearcam.results.kind import Kind
 
 NAME: Final = "gear-pair"
 """As in a file."""
 
 _HERE: Final = "gearcam.kinds.gear_pair"
-
-STUDIES: Final = studies_of(
-    NAME,
-    Study(
-        name="mesh",
-        key="meshing",
-        doc="Study the meshing of gear pairs step by step; write DIR/NAME/meshing.csv.",
-        done="meshed",
-        table="meshing",
-        compute=deferred(f"{_HERE}.studies:study_mesh"),
-        options={"center_distance_mm": "center"},
-        repeats=("contact-ratio",),  # the study checks the drive as mounted
-    ),
-    Study(
-        name="errors",
-        key="errors",
-        doc="Study errors of mounting and making of gear pairs; write DIR/NAME/errors.csv.",
-        done="studied",
-        table="errors",
-        compute=deferred(f"{_HERE}.errors:study_errors"),
-        options={"eccentricity_deg": "eccentricity-angle", "file": "pitch"},
-    ),
-    Study(
-        name="forces",
-        key="forces",
-        doc="Compute forces, torque, efficiency and contact pressure; write DIR/NAME/forces.csv.",
-        done="computed",
-        table="forces",
-        compute=deferred(f"{_HERE}.forces:study_forces"),
-        demand=deferred(f"{_HERE}.forces:demand"),
-    ),
-    Study(
-        name="stress",
-        key="stress",
-        doc="Compute stress in tooth roots, shares and lag under load; write DIR/NAME/stress.csv.",
-        done="computed",
-        table="stress",
-        compute=deferred(f"{_HERE}.stress:study_stress"),
-        demand=deferred(f"{_HERE}.stress:demand"),
-        options={"teeth": "tooth"},
-        repeats=("contact-pressure",),  # with the true shares
-    ),
-    dynamics_study(
-        f"{_HERE}.dynamics:study_dynamics", f"{_HERE}.dynamics:demand", speed="drive.speed_rpm"
-    ),
-    ACCURACY,
-)
-"""The studies by name."""
 
 _OF_SHAFT: Final = ("bore_diameter", "hub_diameter", "lightening_holes", "stop_pin")
 """What a ring does not have."""
@@ -120,7 +72,7 @@ class PairOutputSpec(OutputSpec):
     """
 
     files: tuple[str, ...] = files_param(FORMATS, NAME)
-    studies: tuple[str, ...] = studies_param(STUDIES)
+    studies: tuple[str, ...] = studies_param(NAME)
     pose: float = pose_param("phi1", "driver angle of the assembly drawing")
     inspection_points: int = param(
         COUNT, default=9, ge=2, le=1000, doc="number of points on each flank in inspection.csv"
@@ -419,7 +371,6 @@ KIND: Final = Kind(
     charts=DeferredMapping(f"{_HERE}.drawn:CHARTS"),
     scene=deferred(f"{_HERE}.drawn:scene"),
     advice=deferred(f"{_HERE}.advice:PairAdvice"),
-    studies=STUDIES,
     ladders=DeferredMapping(f"{_HERE}.studies:LADDERS"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
 )

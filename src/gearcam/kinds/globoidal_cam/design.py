@@ -15,19 +15,17 @@ from gearcam.designs.outputs import MESHES, files_param, studies_param
 from gearcam.designs.table import table_of
 from gearcam.kinds.follower_tables import load_faults
 from gearcam.kinds.shared import (
-    ACCURACY,
     AccuracySpec,
     ForcesSpec,
     GoalSpec,
     GriddedOutput,
-    forces_study,
 )
 from gearcam.laws.motion import MOTION_LAWS
 from gearcam.mechanics.drive import DriveSpec
 from gearcam.mechanics.gravity import GravitySpec
 from gearcam.mechanics.load import FORCES
 from gearcam.mechanics.material import MaterialSpec
-from gearcam.results.kind import Kind, studies_of
+from gearcam.results.kind import Kind
 from gearcam.spatial.globoidal_spec import (
     GloboidalSpec,
     IndexSpec,
@@ -59,13 +57,6 @@ INDEX: Final = Choice(
 """The table ``[index]``."""
 
 _HERE: Final = "gearcam.kinds.globoidal_cam"
-
-STUDIES: Final = studies_of(
-    NAME,
-    forces_study("gearcam.kinds.gridded_forces:study_forces"),
-    ACCURACY,
-)
-"""The studies by name."""
 
 GLOBOIDAL_FORMATS: Final = ("svg", *MESHES, "csv", "report")
 """What ``output.files`` may list."""
@@ -107,7 +98,7 @@ class GloboidalOutput(GriddedOutput):
     """
 
     files: tuple[str, ...] = files_param(GLOBOIDAL_FORMATS, NAME)
-    studies: tuple[str, ...] = studies_param(STUDIES)
+    studies: tuple[str, ...] = studies_param(NAME)
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -223,7 +214,6 @@ KIND: Final = Kind(
     files=DeferredMapping(f"{_HERE}.shown:FILES", group_of(NAME, "formats")),
     charts=DeferredMapping(f"{_HERE}.drawn:CHARTS"),
     scene=deferred(f"{_HERE}.drawn:scene"),
-    studies=STUDIES,
     ladders=DeferredMapping(f"{_HERE}.shown:LADDERS"),
     advice=deferred(f"{_HERE}.advice:GloboidalAdvice"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),

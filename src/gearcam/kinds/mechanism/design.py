@@ -35,69 +35,16 @@ from gearcam.kinds.mechanism.asked import TABLES, DwellSpec, IntervalSpec, Stret
 from gearcam.kinds.mechanism.drives import CompareSpec, MachineDrive
 from gearcam.kinds.mechanism.keys import NAME, Sort, WithNames, named
 from gearcam.kinds.mechanism.tolerances import MachinePrecisionSpec, ToleranceSpec
-from gearcam.kinds.shared import ACCURACY, AccuracySpec, ForcesSpec, GoalSpec, dynamics_study
+from gearcam.kinds.shared import AccuracySpec, ForcesSpec, GoalSpec
 from gearcam.mechanics.gravity import GravitySpec
 from gearcam.mechanics.motor import MotorSpec
-from gearcam.results.kind import Kind, Study, studies_of
+from gearcam.results.kind import Kind
 
 if TYPE_CHECKING:
     from gearcam.designs.faults import Fault
     from gearcam.designs.kind import Examined
 
 _HERE: Final = "gearcam.kinds.mechanism"
-
-STUDIES: Final = studies_of(
-    NAME,
-    Study(
-        name="torque",
-        key="torque",
-        doc="Compute the driver's moment under loads, masses and springs; "
-        "write DIR/NAME/torque.csv.",
-        done="computed",
-        table="torque",
-        compute=deferred(f"{_HERE}.torque:study_torque"),
-        demand=deferred(f"{_HERE}.torque:demand"),
-        repeats=("loads-unused",),  # it uses them
-    ),
-    Study(
-        name="forces",
-        key="forces",
-        doc="Compute the forces in joints and guides, with friction; write DIR/NAME/forces.csv.",
-        done="computed",
-        table="forces",
-        compute=deferred(f"{_HERE}.forces:study_forces"),
-        demand=deferred(f"{_HERE}.torque:demand"),
-        repeats=("loads-unused",),
-    ),
-    Study(
-        name="precision",
-        key="precision",
-        doc="Compute deviations of outputs by tolerances; write DIR/NAME/precision.csv.",
-        done="studied",
-        table="precision",
-        compute=deferred(f"{_HERE}.precision:study_precision"),
-        repeats=("loads-unused",),
-    ),
-    Study(
-        name="balance",
-        key="balance",
-        doc="Compute shaking force and moment, and weights against them; "
-        "write DIR/NAME/balance.csv.",
-        done="computed",
-        table="balance",
-        compute=deferred(f"{_HERE}.balance:study_balance"),
-        demand=deferred(f"{_HERE}.balance:demand"),
-        repeats=("loads-unused",),
-    ),
-    dynamics_study(
-        f"{_HERE}.dynamics:study_dynamics",
-        f"{_HERE}.dynamics:demand",
-        speed="drive[0].speed_rpm",
-        repeats=("loads-unused",),
-    ),
-    ACCURACY,
-)
-"""The studies by name."""
 
 FORMATS: Final = ("csv", "dxf", "svg", "report")
 """What ``output.files`` may list."""
@@ -234,7 +181,7 @@ class MechanismOutput(OutputSpec):
     """
 
     files: tuple[str, ...] = files_param(FORMATS, NAME)
-    studies: tuple[str, ...] = studies_param(STUDIES)
+    studies: tuple[str, ...] = studies_param(NAME)
     outputs: tuple[str, ...] | None = param(
         TEXT,
         default=None,
@@ -440,7 +387,6 @@ KIND: Final = Kind(
     files=DeferredMapping(f"{_HERE}.shown:FILES", group_of(NAME, "formats")),
     charts=DeferredMapping(f"{_HERE}.charts:CHARTS"),
     scene=deferred(f"{_HERE}.drawn:scene"),
-    studies=STUDIES,
     ladders=DeferredMapping(f"{_HERE}.drawn:LADDERS"),
     advice=deferred(f"{_HERE}.advice:MechanismAdvice"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),

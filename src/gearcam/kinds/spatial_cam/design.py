@@ -16,12 +16,10 @@ from gearcam.designs.outputs import MESHES, files_param, studies_param
 from gearcam.kinds.cam.public import MOTION, circumstances
 from gearcam.kinds.follower_tables import load_faults
 from gearcam.kinds.shared import (
-    ACCURACY,
     AccuracySpec,
     ForcesSpec,
     GoalSpec,
     GriddedOutput,
-    forces_study,
 )
 from gearcam.mechanics.drive import DriveSpec
 from gearcam.mechanics.gravity import GravitySpec
@@ -29,7 +27,7 @@ from gearcam.mechanics.load import FORCES, LoadSpec
 from gearcam.mechanics.mass import MassSpec
 from gearcam.mechanics.material import MaterialSpec
 from gearcam.mechanics.spring import SpringSpec
-from gearcam.results.kind import Kind, Study, studies_of
+from gearcam.results.kind import Kind
 from gearcam.spatial.friction import SpaceFrictionSpec
 from gearcam.spatial.spec import CylinderBlank, CylinderSpec, SpatialFollower
 from gearcam.spatial.tool import MillSpec
@@ -42,22 +40,6 @@ NAME: Final = "spatial-cam"
 """As in a file."""
 
 _HERE: Final = "gearcam.kinds.spatial_cam"
-
-STUDIES: Final = studies_of(
-    NAME,
-    Study(
-        name="developed",
-        key="developed",
-        doc="Compute the error of walls that are constructed in the developed plane; write "
-        "DIR/NAME/developed.csv.",
-        done="compared",
-        table="developed",
-        compute=deferred(f"{_HERE}.studies:study_developed"),
-    ),
-    forces_study("gearcam.kinds.gridded_forces:study_forces"),
-    ACCURACY,
-)
-"""The studies by name."""
 
 SPATIAL_FORMATS: Final = (
     "dxf", "svg", *MESHES, "step", "csv", "report", "tool-path", "gcode",
@@ -77,7 +59,7 @@ class SpatialOutput(GriddedOutput):
     """
 
     files: tuple[str, ...] = files_param(SPATIAL_FORMATS, NAME)
-    studies: tuple[str, ...] = studies_param(STUDIES)
+    studies: tuple[str, ...] = studies_param(NAME)
     path_tolerance: float = param(
         LENGTH,
         default=0.005,
@@ -248,7 +230,6 @@ KIND: Final = Kind(
     files=DeferredMapping(f"{_HERE}.shown:FILES", group_of(NAME, "formats")),
     charts=DeferredMapping(f"{_HERE}.drawn:CHARTS"),
     scene=deferred(f"{_HERE}.drawn:scene"),
-    studies=STUDIES,
     ladders=DeferredMapping(f"{_HERE}.studies:LADDERS"),
     advice=deferred(f"{_HERE}.advice:SpatialAdvice"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),

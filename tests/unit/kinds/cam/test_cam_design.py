@@ -15,7 +15,6 @@ from arch import rules
 from claims.motion import MOTION_CLAIMS
 from gearcam.base.errors import DesignError
 from gearcam.cams.spec import CamSpec, FollowerSpec
-from gearcam.commands import studied
 from gearcam.designs import document_of, load, loads
 from gearcam.designs.kind import KINDS
 from gearcam.designs.template import template
@@ -32,6 +31,7 @@ from gearcam.laws.phases_of_lift import (
     SegmentPhase,
 )
 from gearcam.parts.blank import WheelBlank
+from gearcam.study_commands import studied
 from helpers_files import FLAT, ROLLER, SWINGING, changed, read
 from helpers_tables import phase_table, rise_table, turn_tables
 
