@@ -20,8 +20,6 @@ from gearcam.report.page import BLOCKS, rendered, verdict
 PAGE: Final = "compare.html"
 """Name of the file."""
 
-_INKS: Final = 6
-"""Number of line colours of a page."""
 
 
 def document(variants: Sequence[Variant], title: str) -> dict[str, Any]:
@@ -52,12 +50,35 @@ def document(variants: Sequence[Variant], title: str) -> dict[str, Any]:
     return {
         "title": title,
         "kind": made[0].result.design.kind,
+        "compared": True,
         "blocks": blocks,
         "scene": _laid_over(scenes, [k for k, _ in drawn]),
-        "charts": [
-            chart_data(name, joined(name, made), scenes[0].driver) for name in made[0].result.charts
-        ],
+        "charts": [_chart(name, made, scenes[0].driver) for name in made[0].result.charts],
     }
+
+
+def _chart(name: str, made: Sequence[Variant], driver: str) -> dict[str, Any]:
+    """Return the data of a chart whose lines know their variants.
+
+    ``variant`` is the number of the variant, which chooses the colour, and ``called`` its label;
+    ``kind`` is the number of the line in its own chart, which chooses the dashes, and ``what`` its
+    label there.
+    """
+    data = chart_data(name, joined(name, made), driver)
+    own = [
+        {"variant": k, "called": made[k].label, "kind": kind, "what": line.label}
+        for k, chart in _alike(name, made)
+        for kind, line in enumerate(chart.lines)
+    ]
+    lines = [{**line, **whose} for line, whose in zip(data["lines"], own, strict=True)]
+    return {**data, "lines": lines}
+
+
+def _alike(name: str, variants: Sequence[Variant]) -> list[tuple[int, Chart]]:
+    """Return the charts of a `name` with the axes of the first one, with numbers of variants."""
+    charts = [(k, one.result.chart(name)) for k, one in enumerate(variants) if name in one.result.charts]
+    first = charts[0][1]
+    return [(k, one) for k, one in charts if (one.x, one.y) == (first.x, first.y)]
 
 
 def joined(name: str, variants: Sequence[Variant]) -> Chart:
@@ -74,9 +95,8 @@ def joined(name: str, variants: Sequence[Variant]) -> Chart:
     -------
     Chart
     """
-    first = variants[0].result.chart(name)
-    charts = [(one.label, one.result.chart(name)) for one in variants if name in one.result.charts]
-    charts = [(label, one) for label, one in charts if (one.x, one.y) == (first.x, first.y)]
+    charts = [(variants[k].label, chart) for k, chart in _alike(name, variants)]
+    first = charts[0][1]
     lines, limits = [], []
     for label, chart in charts:
         single = len(chart.lines) == 1
@@ -136,8 +156,8 @@ def _over(scene: Scene, places: np.ndarray) -> Scene:
 def _laid_over(scenes: Sequence[Scene], numbers: Sequence[int]) -> dict[str, Any]:
     """Return a scene with the bodies of the first variant and the outlines of the others.
 
-    The `numbers` of the variants select the colours. Nothing is coloured by values, which would be
-    those of the first variant only.
+    Each body has the number of its ``variant``, which chooses the colour. Nothing is coloured by
+    values, which would be those of the first variant only.
     """
     first = scenes[0]
     others = [
@@ -150,11 +170,13 @@ def _laid_over(scenes: Sequence[Scene], numbers: Sequence[int]) -> dict[str, Any
     closed = all(one.closed for one in scenes)
     flat = replace(first, bodies=bodies, closed=closed, coloured=(), in_space={})  # without solids
     data = scene_data(flat)
+    for body in data["bodies"][: len(first.bodies)]:
+        body["variant"] = numbers[0]
     for (k, _), body in zip(others, data["bodies"][len(first.bodies) :], strict=True):
         chains = [*body["metal"], *body["floor"]]
         body["lines"] += [
             {"layer": "OUTLINE", "points": points, "closed": True, "dashed": False}
             for points in chains
         ]
-        body |= {"metal": [], "floor": [], "teeth": None, "ink": f"line-{k % _INKS + 1}"}
+        body |= {"metal": [], "floor": [], "teeth": None, "variant": k}
     return data

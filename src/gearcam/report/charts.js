@@ -2,6 +2,11 @@
 
 // Lines differ in colour and dashes.
 const DASHES = [[], [9, 3], [9, 3, 2, 3], [2, 3], [14, 4], [5, 2]];
+const INKS = 6; // colours of lines
+const APART = 70; // between the marks of a line, pixels
+const MARK = 4; // half the width of a mark
+const NEAR = 12; // from the pointer, pixels
+const FAINT = 0.15; // opacity of other variants than the one pointed at
 const HEIGHT = 230; // of a chart, pixels
 const PRINTED = { width: 330, height: 200 };
 const PRINTED_FIRST = { ...PRINTED, width: 676 }; // over both columns
@@ -56,19 +61,28 @@ function add(parent, tag, attributes = {}, text = "") {
   return made;
 }
 
-// Dots are alternately full and hollow.
-const full = (k, dots) => dots && k % 2 === 0;
+/* How a line is drawn. Lines of one design differ in colour and dashes; of variants the colour says
+   which one, the second six having marks too, and dashes say what. Dots are alternately full and
+   hollow. */
+function lookOf({ variant, kind, dots }, k) {
+  const [whose, what] = [variant ?? k, kind ?? k];
+  return {
+    ink: inkOf(whose), dash: DASHES[what % DASHES.length], full: dots && what % 2 === 0,
+    marked: variant >= INKS,
+  };
+}
+
+const inkOf = (number) => `line-${(number % INKS) + 1}`;
 
 // A sample of a line, drawn by the style sheet's colours.
-function sampleOf(k, dots) {
+function sampleOf({ ink, dash, full, marked }, dots) {
   const made = document.createElementNS("http://www.w3.org/2000/svg", "svg");
-  made.setAttribute("class", `sample line-${(k % 6) + 1} ${full(k, dots) ? "full" : ""}`);
+  made.setAttribute("class", `sample ${ink} ${full ? "full" : ""}`);
   made.setAttribute("viewBox", "0 0 28 8");
   made.setAttribute("aria-hidden", "true");
-  const dash = DASHES[k % DASHES.length].join(" ");
-  made.innerHTML = dots
-    ? `<circle cx="14" cy="4" r="3"/>`
-    : `<path d="M0 4H28" stroke-dasharray="${dash}"/>`;
+  const mark = marked ? `<path class="mark" d="M14 0L18 4L14 8L10 4Z"/>` : "";
+  const dot = marked ? `<rect x="11" y="1" width="6" height="6"/>` : `<circle cx="14" cy="4" r="3"/>`;
+  made.innerHTML = dots ? dot : `<path d="M0 4H28" stroke-dasharray="${dash.join(" ")}"/>${mark}`;
   return made;
 }
 
@@ -103,11 +117,7 @@ class ChartView {
     this.home.setAttribute("aria-label", `${title}. ${y} over ${x}: ${names}, ${ends}${levels}`);
     this.button.setAttribute("aria-label", `Save CSV: ${title}`);
     this.legend.replaceChildren();
-    this.values = lines.map((line, k) => {
-      const row = add(this.legend, "li");
-      row.append(sampleOf(k, line.dots), ` ${line.label} `);
-      return add(row, "output", { "aria-live": "off" });
-    });
+    this.values = lines[0]?.called === undefined ? this.rows() : this.rowsOfVariants();
     for (const limit of limits) {
       const beyond = limit.seen ? "" : ", outside this chart";
       const row = add(this.legend, "li", { class: "limit" });
@@ -116,6 +126,35 @@ class ChartView {
     for (const label of new Set(marks.map((one) => one.label))) {
       add(this.legend, "li", { class: "mark" }, label);
     }
+  }
+
+  // A row of the legend for each line; returns where its value at the place of the parts is told.
+  rows() {
+    return this.chart.lines.map((line, k) => {
+      const row = add(this.legend, "li");
+      row.append(sampleOf(lookOf(line, k), line.dots), ` ${line.label} `);
+      return add(row, "output", { "aria-live": "off" });
+    });
+  }
+
+  // A row for each variant, with the values of its lines, and one for what each dash means.
+  rowsOfVariants() {
+    const rows = new Map();
+    const values = this.chart.lines.map((line, k) => {
+      const { variant, called, dots } = line;
+      if (!rows.has(variant)) {
+        const row = add(this.legend, "li", { "data-variant": variant });
+        row.append(sampleOf(lookOf({ ...line, kind: 0 }, k), dots), ` ${called} `);
+        rows.set(variant, row);
+      } else rows.get(variant).append(" ");
+      return add(rows.get(variant), "output", { "aria-live": "off" });
+    });
+    const whats = new Map(this.chart.lines.map((line) => [line.kind, line]));
+    for (const [kind, { what, dots }] of whats.size > 1 ? whats : []) {
+      const look = { ...lookOf({ variant: 0, kind, dots }, kind), ink: "what" };
+      add(this.legend, "li", { class: "what" }, ` ${what}`).prepend(sampleOf(look, dots));
+    }
+    return values;
   }
 
   // Replace this chart by another one when it is in sight.
@@ -181,6 +220,9 @@ class ChartView {
     this.plot.over.append(this.cursor);
     if (this.chart.moves) this.plot.over.classList.add("moves");
     this.plot.over.addEventListener("click", (event) => this.clicked(event));
+    if (this.chart.lines[0]?.called === undefined) return;
+    this.plot.over.addEventListener("pointermove", (event) => this.page.point(this.nearest(event)));
+    this.plot.over.addEventListener("pointerleave", () => this.page.point(undefined));
   }
 
   // The ends of both axes; of one scale the shorter axis goes on to both sides.
@@ -207,13 +249,13 @@ class ChartView {
 
   series(line, k) {
     const facets = [{ scale: "x", auto: true }, { scale: "y", auto: true }];
-    const ink = `line-${(k % 6) + 1}`;
-    const paths = (plot, row) => this.line(plot, row, line.dots, ink, k);
+    const look = lookOf(line, k);
+    const paths = (plot, row) => this.line(plot, row, line, look);
     return { label: line.label, stroke: "none", facets, paths };
   }
 
   // Straight from point to point; null interrupts the line.
-  line(plot, row, dots, ink, k) {
+  line(plot, row, { dots, variant }, { ink, dash, full, marked }) {
     const [xs, ys] = plot.data[row];
     const { left, top, width, height } = plot.bbox;
     const pen = plot.ctx;
@@ -224,28 +266,41 @@ class ChartView {
     pen.clip();
     pen.strokeStyle = pen.fillStyle = this.page.colours[ink];
     pen.lineWidth = 1.6 * ratio;
-    pen.setLineDash(dots ? [] : DASHES[k % DASHES.length].map((length) => length * ratio));
+    pen.setLineDash(dots ? [] : dash.map((length) => length * ratio));
+    if (aside(this.page, variant)) pen.globalAlpha = FAINT;
     // many dots are drawn small, a single one large, and dots below lines
     const most = xs.length > 1 ? 2.5 : 5;
     const radius = Math.max(1.2 * ratio, Math.min(most * ratio, (0.5 * width) / xs.length));
     if (dots) pen.globalCompositeOperation = "destination-over";
     pen.beginPath();
     let up = true;
+    const way = []; // of the line, for its marks
     for (let i = 0; i < xs.length; i++) {
       if (xs[i] === null || ys[i] === null) {
         up = true;
         continue;
       }
       const [x, y] = [plot.valToPos(xs[i], "x", true), plot.valToPos(ys[i], "y", true)];
-      if (dots) {
+      if (dots && marked) {
+        pen.rect(x - radius, y - radius, 2 * radius, 2 * radius);
+      } else if (dots) {
         pen.moveTo(x + radius, y);
         pen.arc(x, y, radius, 0, 7);
       } else if (up) pen.moveTo(x, y);
       else pen.lineTo(x, y);
+      if (marked) way.push(x, y);
       up = false;
     }
-    if (full(k, dots)) pen.fill();
+    if (full) pen.fill();
     pen.stroke();
+    if (marked && !dots) {
+      pen.beginPath();
+      for (const [x, y] of alongOf(way, APART * ratio, variant)) {
+        diamond(x, y, MARK * ratio).forEach(([px, py], n) => (n ? pen.lineTo : pen.moveTo).call(pen, px, py));
+        pen.closePath();
+      }
+      pen.fill();
+    }
     pen.restore();
     return null; // drawn already
   }
@@ -304,6 +359,20 @@ class ChartView {
     this.page.go(this.plot.posToVal(left, "x"));
   }
 
+  // The variant whose line or dot is nearest to the pointer; none if all are far.
+  nearest({ offsetX, offsetY }) {
+    let [least, variant] = [NEAR, undefined];
+    for (const line of this.chart.lines) {
+      for (let k = 0; k < line.x.length; k++) {
+        if (line.x[k] === null || line.y[k] === null) continue;
+        const [x, y] = [this.plot.valToPos(line.x[k], "x"), this.plot.valToPos(line.y[k], "y")];
+        const away = Math.hypot(x - offsetX, y - offsetY);
+        if (away < least) [least, variant] = [away, line.variant];
+      }
+    }
+    return variant;
+  }
+
   // Show values and cursor at the place of the parts.
   mark(place) {
     if (!this.plot) return;
@@ -333,6 +402,27 @@ class ChartView {
     this.plot?.redraw(false, true);
   }
 }
+
+// Places along a way of points (flat), evenly apart; marks of different variants do not begin alike.
+function alongOf(way, apart, variant) {
+  const found = [];
+  let left = apart * (0.2 + 0.13 * (variant % INKS)); // to the next one
+  for (let k = 2; k < way.length; k += 2) {
+    const [x, y, ex, ey] = way.slice(k - 2, k + 2);
+    const long = Math.hypot(ex - x, ey - y);
+    for (; left < long; left += apart) {
+      found.push([x + (left / long) * (ex - x), y + (left / long) * (ey - y)]);
+    }
+    left -= long;
+  }
+  return found;
+}
+
+const diamond = (x, y, half) => [[x + half, y], [x, y + half], [x - half, y], [x, y - half]];
+
+// Whether what belongs to a variant stands back behind another one that is pointed at.
+const aside = ({ chosen }, variant) =>
+  chosen !== undefined && variant !== undefined && variant !== chosen;
 
 // On paper: light colours, and folded sections open.
 function paper(on) {

@@ -31,6 +31,7 @@ const page = {
   get scene() { return this.shown.scene; },
   get title() { return this.shown.title; },
   go,
+  point,
 };
 
 const parts = new Parts(element("parts"), redraw, draw);
@@ -307,9 +308,26 @@ function listen() {
   });
   still.addEventListener("change", name);
   dark.addEventListener("change", repaint);
+  for (const [name, on] of [["pointerover", true], ["pointerout", false], ["focusin", true], ["focusout", false]]) {
+    document.addEventListener(name, ({ target }) => {
+      const row = target.closest?.("[data-variant]");
+      if (row) point(on ? Number(row.dataset.variant) : undefined);
+    });
+  }
   window.addEventListener("hashchange", unfold);
   window.addEventListener("beforeprint", () => print(true));
   window.addEventListener("afterprint", () => print(false));
+}
+
+// Have one variant stand out from the others, or none.
+function point(variant) {
+  if (page.chosen === variant) return;
+  page.chosen = page.seen.chosen = variant;
+  for (const row of document.querySelectorAll("[data-variant]")) {
+    row.classList.toggle("chosen", Number(row.dataset.variant) === variant);
+  }
+  redraw();
+  charts.repaint();
 }
 
 const svg = () => svgOf(page.scene, page.place, page.cycles, page.seen);

@@ -175,6 +175,7 @@ class Parts {
   name(pen, { text, x, y, drop, left, ink }, ratio, colours) {
     const at = pen.getTransform().transformPoint({ x, y });
     pen.setTransform(ratio, 0, 0, ratio, at.x, at.y);
+    pen.globalAlpha = 1;
     pen.font = `${NAMES}px sans-serif`;
     pen.setLineDash([]);
     pen.lineWidth = 3;
@@ -186,6 +187,7 @@ class Parts {
   }
 
   mark(pen, mark, pixel, dot, colours) {
+    pen.globalAlpha = mark.faint ? FAINT : 1;
     if (mark.pose) {
       pen.translate(mark.pose.x, mark.pose.y);
       pen.rotate(mark.pose.turn);

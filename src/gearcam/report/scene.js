@@ -112,7 +112,11 @@ function tones(scene) {
   const own = scene.bodies.map((body) => body.name.split("_")[0]); // steps of one wheel
   const wheels = own.filter((name, k) => name !== "frame" && !scene.bodies[k].link);
   const names = [...new Set(wheels)].sort();
-  return own.map((name, k) => (scene.bodies[k].link ? 3 : (names.indexOf(name) % 2) + 1));
+  const toneOf = (name, body) => {
+    if (body.variant !== undefined) return 1; // its edge has the colour of the variant
+    return body.link ? 3 : (names.indexOf(name) % 2) + 1;
+  };
+  return own.map((name, k) => toneOf(name, scene.bodies[k]));
 }
 
 // A tooth of an outline, closed by its chord.
@@ -181,7 +185,8 @@ function* marksOf(scene, place, cycles, seen, pixel, edge = Infinity) {
   const first = cycles ? posesOf(scene, place) : poses;
   const toothed = scene.bodies.filter((body) => body.teeth);
   for (const [k, body] of scene.bodies.entries()) {
-    yield* bodyMarks(body, poses[k], tone[k]);
+    const faint = aside(seen, body.variant);
+    for (const mark of bodyMarks(body, poses[k], tone[k], pixel)) yield { ...mark, faint };
     const column = body.teeth && seen.carry ? columnOf(toothed, body) : -1;
     if (column < 0) continue;
     const chains = found
@@ -236,8 +241,9 @@ function columnOf(toothed, body) {
   return toothed.map((one) => one.name).sort().indexOf(body.name);
 }
 
-function* bodyMarks(body, pose, tone) {
-  const ink = body.ink ?? (body.name === "frame" ? "text" : `ink-${tone}`);
+function* bodyMarks(body, pose, tone, pixel) {
+  const own = body.name === "frame" ? "text" : `ink-${tone}`;
+  const ink = body.variant === undefined ? own : inkOf(body.variant);
   for (const chains of platesOf(body)) {
     yield { chains, closed: true, fill: `fill-${tone}`, ink, pose };
   }
@@ -245,6 +251,11 @@ function* bodyMarks(body, pose, tone) {
   for (const line of body.lines.filter((one) => !one.dashed)) {
     const fill = line.layer === "MARK" && line.closed ? ink : null;
     yield { chains: (line.chains ??= [line.points]), closed: line.closed, fill, ink, pose };
+    if (body.variant >= INKS && line.layer === "OUTLINE") {
+      const places = alongOf(line.points, APART * pixel, body.variant);
+      const chains = places.map(([x, y]) => diamond(x, y, MARK * pixel).flat());
+      yield { chains, closed: true, fill: ink, ink, pose };
+    }
   }
 }
 
