@@ -7,6 +7,7 @@
 
   // Numbers in the page that are not saved in the file, by key.
   let pending = {};
+  let told = ""; // beside the buttons when nothing is pending
   const rows = new Map();
 
   // While the server answers one request a second one is sent; more would only wait there.
@@ -130,7 +131,8 @@
   function enable() {
     const none = Object.keys(pending).length === 0;
     for (const id of ["save", "undo"]) document.getElementById(id).disabled = none;
-    document.getElementById("saved").textContent = none ? "" : "Not saved.";
+    if (!none) told = "";
+    document.getElementById("saved").textContent = none ? told : "Not saved.";
   }
 
   // The value rounded to the step of the slider.
@@ -199,10 +201,20 @@
   }
 
   async function store() {
+    const changes = { ...pending };
     try {
-      const reply = await post("save", { changes: pending, made });
+      const reply = await post("save", { changes, made });
       if (reply.error) tell(reply.error);
-      else document.getElementById("saved").textContent = "Saved.";
+      else {
+        told = "Saved.";
+        for (const [key, value] of Object.entries(changes)) {
+          const row = rows.get(key);
+          if (row) row.key.value = value;
+          if (pending[key] === value) delete pending[key];
+          row?.place.classList.toggle("changed", key in pending);
+        }
+        enable();
+      }
     } catch {
       ended();
     }
@@ -242,6 +254,11 @@
       return { stale: true };
     }
   }
+
+  // Numbers that are not saved are lost with the page.
+  window.addEventListener("beforeunload", (event) => {
+    if (Object.keys(pending).length) event.preventDefault();
+  });
 
   window.gearcam.solids.from(solids);
   const events = new EventSource("events");
