@@ -21,7 +21,6 @@ PAGE: Final = "compare.html"
 """Name of the file."""
 
 
-
 def document(variants: Sequence[Variant], title: str) -> dict[str, Any]:
     """Return the content of the page of variants (see `gearcam.report.page`).
 
@@ -76,7 +75,9 @@ def _chart(name: str, made: Sequence[Variant], driver: str) -> dict[str, Any]:
 
 def _alike(name: str, variants: Sequence[Variant]) -> list[tuple[int, Chart]]:
     """Return the charts of a `name` with the axes of the first one, with numbers of variants."""
-    charts = [(k, one.result.chart(name)) for k, one in enumerate(variants) if name in one.result.charts]
+    charts = [
+        (k, one.result.chart(name)) for k, one in enumerate(variants) if name in one.result.charts
+    ]
     first = charts[0][1]
     return [(k, one) for k, one in charts if (one.x, one.y) == (first.x, first.y)]
 
