@@ -35,6 +35,7 @@ from gearcam.gears.spec import RingSpec
 from gearcam.laws.ratio.span import angle_text
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane, as_pairs, distinct
 from gearcam.numeric.contour import Contour, Run
+from gearcam.numeric.polygons import is_simple
 from gearcam.numeric.sampling import MOST, Dense, Sampler
 
 _NO_MATE = 3.0
@@ -365,6 +366,8 @@ def _lowest(toothing: Toothing, rows: Rows) -> Array:
 
 def _demand_simple(outline: Outline) -> None:
     """Refuse an outline that crosses itself: a tooth has been cut off."""
+    if is_simple(outline.points):
+        return
     from shapely import LinearRing, Polygon, is_valid_reason
 
     points = as_pairs(outline.points)
