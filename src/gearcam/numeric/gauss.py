@@ -52,7 +52,7 @@ def legendre_rule(count: int) -> tuple[Array, Array]:
     """
     k = np.arange(1, count)
     beside = np.diag(k / np.sqrt(4.0 * k * k - 1.0), -1)
-    x: Array = np.linalg.eigvalsh(beside, UPLO="L")
+    x = np.linalg.eigvalsh(beside, UPLO="L").astype(np.float64)
     value, slope = _legendre(x, count)
     x = x - value / slope
     x = 0.5 * (x - x[::-1])

@@ -66,8 +66,8 @@ def _doubtful(points: Plane, first: Ints, right: Mask, up: Mask) -> Ints:
     end = np.roll(begin, -1)
     one, two = near_chords(begin, end)
     gap = two - one
-    halves = (right[first[one]] == right[first[two]]) | (up[first[one]] == up[first[two]])
-    beside = (gap == 0) | (((gap == 1) | (gap == len(first) - 1)) & halves)
+    alike = (right[first[one]] == right[first[two]]) | (up[first[one]] == up[first[two]])
+    beside = (gap == 0) | (((gap == 1) | (gap == len(first) - 1)) & alike)
     chain, other = np.stack([(one, two), (two, one)], axis=1)[:, :, ~beside].reshape(2, -1)
     group, place = in_groups(np.diff(first, append=first[0] + len(points))[chain])
     chord = (first[chain][group] + place) % len(points)

@@ -97,7 +97,7 @@ def thin_wall(subject: CheckedParts, limit: float) -> Iterator[Remark]:
             )
 
 
-class _Edge:
+class _Chorded:
     """The chords of an edge, from which walls are measured.
 
     Parameters
@@ -117,7 +117,7 @@ class _Edge:
         prepare(made)
         return made
 
-    def to(self, other: _Edge | Circle) -> float:
+    def to(self, other: _Chorded | Circle) -> float:
         """Return the distance of another edge, or of a circle inside or outside this one, mm."""
         if isinstance(other, Circle):
             return nearest(self.points, other.center) - 0.5 * other.diameter
@@ -129,20 +129,20 @@ class _Edge:
 def _walls(part: Part) -> Iterator[tuple[float, str]]:
     """Yield thickness and place of every wall."""
 
-    def edge_of(edge: Edge) -> _Edge:
-        return _Edge(edge.polyline(part.tolerance))
+    def edge_of(edge: Edge) -> _Chorded:
+        return _Chorded(edge.polyline(part.tolerance))
 
     shapes = [
         one.shape if isinstance(one.shape, Circle) else edge_of(one.shape) for one in part.openings
     ]
     edges = [
-        (_Edge(edge.polyline(_FINE * part.tolerance)), what)
+        (_Chorded(edge.polyline(_FINE * part.tolerance)), what)
         for what, ones in (("outline", part.contours), ("roots", part.inner))
         for edge in ones
     ]
     if part.hub is not None:
         turned: Plane = np.exp(2j * np.pi * np.arange(_ON_HUB) / _ON_HUB)
-        edges.append((_Edge(0.5 * part.hub.diameter * turned), "hub's edge"))
+        edges.append((_Chorded(0.5 * part.hub.diameter * turned), "hub's edge"))
     for number, (opening, shape) in enumerate(zip(part.openings, shapes, strict=True)):
         for other, named in zip(shapes[:number], part.openings[:number], strict=True):
             yield max(_between(shape, other), 0.0), f"{opening.name} and the {named.name}"
@@ -159,11 +159,11 @@ def _walls(part: Part) -> Iterator[tuple[float, str]]:
                 yield max(island.to(shape), 0.0), f"{opening.name} and the groove"
 
 
-def _between(one: _Edge | Circle, other: _Edge | Circle) -> float:
+def _between(one: _Chorded | Circle, other: _Chorded | Circle) -> float:
     """Return the distance of two openings, mm."""
-    if isinstance(one, _Edge):
+    if isinstance(one, _Chorded):
         return one.to(other)
-    if isinstance(other, _Edge):
+    if isinstance(other, _Chorded):
         return other.to(one)
     return abs(one.center - other.center) - 0.5 * (one.diameter + other.diameter)
 
