@@ -20,6 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -383,6 +384,12 @@ _TOGETHER = 64
 """Number of boxes compared all with all: faster than halving so few."""
 
 
+@lru_cache
+def _all_pairs(count: int) -> tuple[Ints, Ints]:
+    """Return the numbers of all pairs of so many, each with itself too."""
+    return np.triu_indices(count)
+
+
 def near_chords(starts: Plane, ends: Plane) -> tuple[Ints, Ints]:
     """Return the pairs of chords whose bounding boxes overlap, by repeated halving.
 
@@ -405,7 +412,7 @@ def near_chords(starts: Plane, ends: Plane) -> tuple[Ints, Ints]:
     while low.shape[1] > _TOGETHER:
         low, high = np.minimum(low[:, ::2], low[:, 1::2]), np.maximum(high[:, ::2], high[:, 1::2])
         levels.append((low, high))
-    one, two = np.triu_indices(low.shape[1])
+    one, two = _all_pairs(low.shape[1])
     for number, (low, high) in enumerate(reversed(levels)):
         if number:  # each in two
             one = (2 * one[:, None] + [0, 0, 1, 1]).ravel()

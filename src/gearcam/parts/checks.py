@@ -123,7 +123,7 @@ class _Chorded:
             return nearest(self.points, other.center) - 0.5 * other.diameter
         from shapely import length, shortest_line  # by a spatial index
 
-        return float(length(shortest_line(self.ring, other.ring)))
+        return float(length(shortest_line(other.ring, self.ring)))
 
 
 def _walls(part: Part) -> Iterator[tuple[float, str]]:
