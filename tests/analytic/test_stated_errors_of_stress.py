@@ -24,7 +24,7 @@ EXACT = {"tolerance": 1e-3, "most": 150_000}
 """A mesh that is so much finer that its own error hardly counts."""
 
 OWN = 1e-4
-"""That error."""
+"""That error: true ones below twice this are not known well."""
 
 
 def judged(name: str) -> list[tuple[float, float]]:
@@ -69,4 +69,4 @@ def test_stated_errors_are_above_the_true_ones(name: str) -> None:
     assert (stated <= 0.01).all()
     assert np.count_nonzero(stated < true) <= 1
     assert (stated > true / 3.0).all()
-    assert (stated <= 30.0 * (true + OWN))[true > 1e-4].all()
+    assert (stated <= 30.0 * (true + OWN))[true > 2.0 * OWN].all()

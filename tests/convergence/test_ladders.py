@@ -126,7 +126,7 @@ def test_the_solid_of_a_cam_in_space_has_order_one_in_points_of_its_surface() ->
     found = climbed(f'name = "cylinder"\n{text}', "solid")
     assert found.order("solid") == pytest.approx(1.0, abs=0.1)
     own = next(rung for rung in found.of("solid") if rung.own)
-    assert own.error == pytest.approx(built(f'name = "cylinder"\n{text}').volume[1], rel=0.2)
+    assert own.error == pytest.approx(built(f'name = "cylinder"\n{text}').volume_error, rel=0.2)
 
 
 def test_the_lift_from_a_profile_is_off_by_no_more_than_its_chords_explain() -> None:

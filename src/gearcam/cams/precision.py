@@ -34,7 +34,7 @@ import numpy as np
 from gearcam.cams.cam import Cam
 from gearcam.cams.measures import Extreme
 from gearcam.cams.wall import Wall
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, distinct
 from gearcam.numeric.piecewise import with_both_sides
 
 Function = Callable[[dict[str, Array]], Array]
@@ -183,7 +183,7 @@ def _largest(wall: Wall, linked: Mapping[str, float], function: Function) -> Ext
             return None
         found = Extreme(theta=float(x[best]), value=float(known[best]))
         low, high = x[max(best - 1, 0)], x[min(best + 1, len(x) - 1)]
-        x = np.union1d(np.linspace(low, high, _AT_ONCE), x[best : best + 1])
+        x = distinct(np.linspace(low, high, _AT_ONCE), x[best : best + 1])
     return found
 
 

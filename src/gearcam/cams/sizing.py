@@ -37,7 +37,7 @@ from gearcam.laws.program import Program
 from gearcam.mechanics.follower_loads import DrivenMotion
 from gearcam.mechanics.friction import FrictionSpec
 from gearcam.mechanics.supports import TotalLoad
-from gearcam.numeric.arrays import Array, Mask
+from gearcam.numeric.arrays import Array, Mask, distinct
 from gearcam.numeric.jets import Jet
 
 SIZES: Final = ("radius", "offset", "pivot", "arm", "roller")
@@ -359,7 +359,7 @@ class Sizing:
             return self.program
         cuts, apart = self.program.cuts, _CLOSE * self.program.period
         near = np.abs(self.load.knots[:, None] - cuts).min(axis=1)
-        return replace(self.program, cuts=np.union1d(cuts, self.load.knots[near > apart]))
+        return replace(self.program, cuts=distinct(cuts, self.load.knots[near > apart]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -417,7 +417,7 @@ class _Places:
             lift = np.array(program.derivatives(theta.ravel(), 3)).reshape(4, *theta.shape)
             lift[:, :, ::_BETWEEN] = survey.values[:4]  # at knots from within the phase
         else:
-            some = np.unique(np.linspace(0, count - 1, max(_COARSE, count // 8)).astype(int))
+            some = distinct(np.linspace(0, count - 1, max(_COARSE, count // 8)).astype(int))
             theta, lift = survey.places[:, some], survey.values[:3][:, :, some]
         step = np.pad(np.diff(theta, axis=1), ((0, 0), (0, 1)))
         middles = survey.places.mean(axis=1)

@@ -28,7 +28,7 @@ from gearcam.cams.carriers import Carrier
 from gearcam.cams.curve import CamCurve, ProfileSegments
 from gearcam.cams.followers import Follower
 from gearcam.cams.measures import Extreme, over_the_end
-from gearcam.numeric.arrays import Array, Plane
+from gearcam.numeric.arrays import Array, Plane, distinct
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.crossings import (
     Branch,
@@ -289,7 +289,7 @@ def _chain(
         start, end = float(segments.start[k]), float(segments.end[k])
         probes = np.linspace(start, end, _PROBES)
         if not segments.jump[k]:
-            probes = np.union1d(probes, segments.curve.program.cuts_between(start, end))
+            probes = distinct(probes, segments.curve.program.cuts_between(start, end))
         points, tangents = segments.at(np.full(len(probes), k), probes)
         turning = np.abs(np.angle(tangents[1:] * np.conj(tangents[:-1])))
         # the square root of a chord's error adds up along the curve
@@ -300,7 +300,7 @@ def _chain(
         places[-1] = end
         if not segments.jump[k]:
             inside = slice(*np.searchsorted(beside, [np.nextafter(start, np.inf), end]).tolist())
-            places = np.unique(np.concatenate([places, beside[inside]]))
+            places = distinct(places, beside[inside])
         number.append(np.full(len(places) - 1, k))
         low.append(places[:-1])
         high.append(places[1:])

@@ -28,7 +28,7 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.dynamics.tabled import Tabled
-from gearcam.numeric.arrays import Array, snapped
+from gearcam.numeric.arrays import Array, distinct, snapped
 from gearcam.numeric.piecewise import extremes
 
 TURN: Final = 2.0 * math.pi
@@ -146,7 +146,7 @@ class Machine(ABC, ShortRepr):
         """
         own, every, high = self.knots, self.knots, self.knots[-1]
         if self.closed:
-            every = np.unique(np.add.outer(self.period * np.arange(math.ceil(periods)), own))
+            every = distinct(np.add.outer(self.period * np.arange(math.ceil(periods)), own))
             high = own[0] + self.period * periods
         first = own[0] if low is None else low
         return np.concatenate([[first], every[(every > first) & (every < high)], [high]])

@@ -14,9 +14,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.numeric.arrays import Array
+from gearcam.numeric.gauss import legendre_rule
 from gearcam.numeric.piecewise import Piecewise
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
+_NODES, _WEIGHTS = legendre_rule(24)
 
 _LEAST: int = 4
 """Panels of a piece, at least; more where the vibration turns by more than 4 rad in one."""

@@ -20,7 +20,7 @@ from gearcam.dynamics.integrate import Integrator, Mode, Motion, MotionPiece, Sw
 from gearcam.dynamics.machine import TURN, Machine, least_and_largest
 from gearcam.dynamics.motion import MachineMotion, residue
 from gearcam.dynamics.motors import Motor
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, distinct
 from gearcam.numeric.gauss import gauss_cells
 from gearcam.numeric.piecewise import extremes, places_between
 
@@ -106,13 +106,13 @@ class RigidMotion(MachineMotion):
         edges = np.add.outer(self.machine.period * periods, self.machine.rows.edges).ravel()
         inside = edges[(edges > low) & (edges < high)]
         knots = self.knots[(self.knots > low) & (self.knots < high)]
-        return np.unique(np.concatenate([[low], knots, steps, inside, [high]]))
+        return distinct(knots, steps, inside, [low, high])
 
     @cached_property
     def places(self) -> Array:
         """Angles, rad, between which nothing of the motion is missed."""
         cells = self._cells
-        return np.unique(places_between(cells, cells=True)) if len(cells) > 1 else cells
+        return distinct(places_between(cells, cells=True)) if len(cells) > 1 else cells
 
     @cached_property
     def speeds(self) -> tuple[tuple[float, float], tuple[float, float]]:

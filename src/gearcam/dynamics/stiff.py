@@ -38,7 +38,7 @@ from gearcam.base.errors import InfeasibleError
 from gearcam.dynamics.integrate import Integrator, Mode, Motion, Switch
 from gearcam.dynamics.motion import residue
 from gearcam.dynamics.tabled import Tabled
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, distinct
 
 _HAIR: Final = 1e-9
 """How far beyond its limit a contact ends or begins, over the backlash."""
@@ -393,8 +393,8 @@ class StiffPair(ShortRepr):
                 math.floor((low - self.table.low) / period),
                 math.ceil((high - self.table.low) / period) + 1.0,
             )
-            knots = np.unique(first) + period * turns[:, None]
-        inner = np.unique(knots)
+            knots = distinct(first) + period * turns[:, None]
+        inner = distinct(knots)
         near = 1e-12 * max(abs(low), abs(high), period)
         inner = inner[(inner > low + near) & (inner < high - near)]
         return [low, *inner.tolist(), high]

@@ -17,7 +17,7 @@ import numpy as np
 
 from gearcam.base.errors import GearcamError
 from gearcam.base.numerals import formatted
-from gearcam.numeric.arrays import Array, Plane, as_complex, bounds
+from gearcam.numeric.arrays import Array, Plane, as_complex, bounds, distinct
 from gearcam.numeric.bulges import bulge_pieces, extremes, off_circle
 
 JOINED: Final = 0.005
@@ -285,7 +285,7 @@ def _arcs(curve: Any, within: float) -> DrawnPiece:
     """Return arcs through points of a spline, by ezdxf's own evaluation."""
     # a periodic spline has knots beyond both ends of its domain
     domain = np.array(curve.knots())[curve.degree : curve.count + 1]
-    breaks, count = np.unique(domain), _ON_CUBIC
+    breaks, count = distinct(domain), _ON_CUBIC
     fine = math.isfinite(within)  # points between are evaluated too
     while True:
         steps = np.linspace(0.0, 1.0, (4 if fine else 2) * count, endpoint=False)

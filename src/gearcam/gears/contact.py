@@ -270,7 +270,7 @@ class FlankPairs(ShortRepr):
         # evenly spaced flanks do the same in each lobe
         teeth = [wheel.toothing.teeth for wheel in self.wheels]
         repeat = math.gcd(*teeth) if self.closed and self.even else len(self.numbers)
-        first, last = self._ends(self.numbers[:repeat]) if repeat else np.empty((2, 0))
+        first, last = self._exact._ends(self.numbers[:repeat]) if repeat else np.empty((2, 0))
         lobes = self.track.arc.period * np.arange(len(self.numbers) // max(repeat, 1))[:, None]
         return ContactArcs(
             start=(first + lobes).ravel(),
@@ -280,6 +280,15 @@ class FlankPairs(ShortRepr):
             travel=self.travel,
             closed=self.closed,
         )
+
+    @property
+    def _exact(self) -> FlankPairs:
+        """The same on exact centrodes: what a table is off the normals turn, times a radius."""
+        driver, driven = (
+            replace(one, toothing=replace(one.toothing, track=one.toothing.track.exact))
+            for one in self.wheels
+        )
+        return replace(self, wheels=(driver, driven))
 
     def _ends(self, j: Ints) -> tuple[Array, Array]:
         """Return the driver angles, rad, at start and end of contact of pairs `j`."""

@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from gearcam.base.display import ShortRepr
 from gearcam.gears.flank import Toothing
 from gearcam.gears.track import Frames
-from gearcam.numeric.arrays import Array, Ints, Mask, Plane, as_pairs
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane, as_pairs, distinct
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -249,7 +249,7 @@ class _Paths(ShortRepr):
             corner, points = corner[left], points[left]
             if corner.size == 0:
                 break
-        return some[np.unique(corner)]
+        return some[distinct(corner)]
 
     def hit(self, some: Ints, reach: Array) -> Mask:
         """Return which corners penetrate the mate's outline."""

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from gearcam.gears.flank import Toothing
 from gearcam.gears.outline import Flanks
+from gearcam.gears.pair import Gear
 from gearcam.gears.rolling import Rolling
 from gearcam.gears.subject import CheckedPair
 from gearcam.gears.track import Frames
@@ -94,14 +95,14 @@ def pair_errors(subject: CheckedPair) -> tuple[float, float, float]:
         return results
 
     driven, *of_wheels = (float(change.max()) for change in largest_changes(compute))
-    of_table = max(_off_by_table(gear.toothing, pair.rolling) for gear in subject.gears)
-    ratio = (sum(of_wheels[1::2]) + 2.0 * of_table) / pair.toothings[0].pitch
-    return driven, max(of_wheels[::2]) + of_table, ratio
+    of_table = max(_off_by_table(gear.toothing) for gear in subject.gears)
+    reach = sum(of_wheels[1::2]) + sum(_off_at_tips(gear) for gear in subject.gears)
+    return driven, max(of_wheels[::2]) + of_table, reach / pair.toothings[0].pitch
 
 
-def _off_by_table(toothing: Toothing, rolling: Rolling) -> float:
+def _off_by_table(toothing: Toothing) -> float:
     """Return how far the table of a centrode moves points of flanks, mm; 0 without one."""
-    track, exact = toothing.track, rolling.tracks[toothing.wheel - 1]
+    track, exact = toothing.track, toothing.track.exact
     if not isinstance(track, TabledCentrode) or track.source.table is None:
         return 0.0
     phi = track.source.table.probes
@@ -110,6 +111,15 @@ def _off_by_table(toothing: Toothing, rolling: Rolling) -> float:
         _points(one, one.frames(phi), s) for one in (toothing, replace(toothing, track=exact))
     )
     return _OF_PROBES * float(np.abs(own - wanted).max())
+
+
+def _off_at_tips(gear: Gear) -> float:
+    """Return how far the table of a centrode moves the reach of flanks, mm; 0 without one."""
+    flanks, track = gear.profile.flanks, gear.toothing.track.exact
+    tips, exact = flanks.tips, replace(gear.toothing, track=track)
+    wanted = _reaches(exact, flanks, exact.frames(tips.phi), exact.frames(tips.foot))
+    found = flanks.sigma * (flanks.sf - track.arc_length(tips.phi))
+    return float(np.abs(np.where(wanted, found - wanted, 0.0)).max())
 
 
 def _perturbed(rolling: Rolling, perturb: Perturb) -> Rolling:

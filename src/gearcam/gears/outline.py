@@ -33,8 +33,9 @@ from gearcam.gears.rounding import round_tips
 from gearcam.gears.spaces import ROWS_PER_TOOTH, entangled, regular_rows, untangle
 from gearcam.gears.spec import RingSpec
 from gearcam.laws.ratio.span import angle_text
-from gearcam.numeric.arrays import Array, Ints, Mask, Plane, as_pairs
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane, as_pairs, distinct
 from gearcam.numeric.contour import Contour, Run
+from gearcam.numeric.polygons import is_simple
 from gearcam.numeric.sampling import MOST, Dense, Sampler
 
 _NO_MATE = 3.0
@@ -162,7 +163,7 @@ class Outline(ShortRepr):
             at = np.flatnonzero((tooth != np.roll(tooth, step)) & (tooth != root))
             at = at[np.argsort(tooth[at], kind="stable")]
             ends.append((at - step) % count if closed else np.clip(at - step, 0, count - 1))
-        return np.unique(tooth[tooth != root]), np.column_stack(ends)
+        return distinct(tooth[tooth != root]), np.column_stack(ends)
 
     @property
     def chord_error(self) -> float:
@@ -365,6 +366,8 @@ def _lowest(toothing: Toothing, rows: Rows) -> Array:
 
 def _demand_simple(outline: Outline) -> None:
     """Refuse an outline that crosses itself: a tooth has been cut off."""
+    if is_simple(outline.points):
+        return
     from shapely import LinearRing, Polygon, is_valid_reason
 
     points = as_pairs(outline.points)

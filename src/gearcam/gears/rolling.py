@@ -29,7 +29,7 @@ from gearcam.base.tolerances import Tolerances
 from gearcam.gears.track import ArcLength, Frames, Track, Wheel
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.laws.ratio.span import RACK, RING, WHEEL, demand_smooth
-from gearcam.numeric.arrays import Array, Ints, Plane, complex_of
+from gearcam.numeric.arrays import Array, Ints, Plane, complex_of, distinct
 from gearcam.numeric.chebyshev import expand, missed
 from gearcam.numeric.piecewise import extremes_of_each
 from gearcam.numeric.pose import Pose
@@ -260,7 +260,7 @@ class Rolling(ShortRepr):
         """
         found = self.arc.unit.knots
         inside = found[(found > knots[0]) & (found < knots[-1])]
-        return np.union1d(knots, inside)
+        return distinct(knots, inside)
 
     @property
     def _tooth_knots(self) -> Array:

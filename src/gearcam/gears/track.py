@@ -212,6 +212,11 @@ class Track(ShortRepr, ABC):
         """The parameter at its end, rad."""
         return self.arc.period * self.periods
 
+    @property
+    def exact(self) -> Track:
+        """The same in closed form, where its frames come from a table."""
+        return self
+
     def arc_length(self, phi: ArrayLike) -> Array:
         """Return s, mm, at parameters, rad."""
         return self.arc.at(*self.arc.within(np.asarray(phi, dtype=float)))

@@ -309,6 +309,11 @@ class TabledCentrode(Centrode):
 
     source: LazyTable
 
+    @property
+    def exact(self) -> Centrode:
+        """The same centrode, without a table."""
+        return self.source.rolling.tracks[self.wheel - 1]
+
     def frames(self, phi: ArrayLike, *, curved: bool = True) -> Frames:
         """Return the frames at driver angles (see `Track.frames`)."""
         table = self.source.table

@@ -20,6 +20,7 @@ from gearcam.dynamics.motors import ConstantMotor, motor_of
 from gearcam.dynamics.regime import even_torque, flywheel, regime
 from gearcam.dynamics.rigid import RigidMotion, RigidRun
 from gearcam.dynamics.settings import COAST, DYNAMICS, REGIME, START, TURNS
+from gearcam.numeric.arrays import distinct
 from gearcam.numeric.narrowing import neighbours, summits
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.numeric.roots import bracketed_root
@@ -421,7 +422,7 @@ class MachineRun(ShortRepr):
         functions : callable
             ``functions(phi) -> (m, n) array`` at rising angles of the driver (n,), rad.
         """
-        x, width = np.union1d(self.places, self.motion.places), _NARROW * self.machine.period
+        x, width = distinct(self.places, self.motion.places), _NARROW * self.machine.period
         samples = functions(x)
         which, _, values = summits(functions, samples, *neighbours(x), width)
         return [float(values[which == number].max()) for number in range(len(samples))]

@@ -14,6 +14,7 @@ from gearcam.mechanics.follower_loads import Loads
 from gearcam.mechanics.hertz import line_pressure
 from gearcam.mechanics.statics import Statics, solve
 from gearcam.numeric import narrowing
+from gearcam.numeric.arrays import distinct
 from gearcam.numeric.piecewise import with_both_sides
 
 if TYPE_CHECKING:
@@ -151,8 +152,8 @@ class UnderLoad:
         knots = [program.knots, *(one.knots for one in design.load)]
         knots += [touch.edges for touch in self.result.touches]
         x = with_both_sides(even, np.concatenate(knots))
-        x = np.union1d(x, self._changes(x))
-        return np.union1d(x, self._extremes(x))  # which may lie beside changes
+        x = distinct(x, self._changes(x))
+        return distinct(x, self._extremes(x))  # which may lie beside changes
 
     def to_and_fro(self, x: Array) -> tuple[Array, Array]:
         """Return positions `x` in the order of the motion, and the way of each."""

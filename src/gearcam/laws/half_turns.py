@@ -27,7 +27,7 @@ from gearcam.laws.phases_of_lift import (
     levels,
 )
 from gearcam.laws.program import Program
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, distinct
 from gearcam.numeric.jets import Jet, Value
 from gearcam.numeric.piecewise import Piece, extremes, piecewise
 
@@ -75,7 +75,7 @@ def completed(half: Program) -> Program:
         half,
         lift=lift,
         stretches=(*half.stretches, *later),
-        cuts=np.union1d(knots, np.append(half.cuts, half.cuts[1:-1] + HALF)),
+        cuts=distinct(knots, half.cuts, half.cuts[1:-1] + HALF),
     )
 
 
@@ -101,7 +101,7 @@ def miss(program: Program) -> Deviation:
 
     cuts = program.cuts
     within = np.append(cuts[cuts < HALF], cuts[cuts >= HALF] - HALF)
-    places, values = extremes(off, np.union1d([0.0, HALF], within))
+    places, values = extremes(off, distinct(within, [0.0, HALF]))
     worst = int(np.abs(values).argmax())
     return Deviation(theta=float(places[worst]) + HALF, value=float(values[worst]))
 

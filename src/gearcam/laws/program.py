@@ -36,7 +36,7 @@ from gearcam.laws.phases_of_lift import (
     levels,
     program_problems,
 )
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, distinct
 from gearcam.numeric.hermite import hermite_quintics
 from gearcam.numeric.jets import Jet, Value, polynomial
 from gearcam.numeric.piecewise import (
@@ -137,7 +137,7 @@ class Program(ShortRepr, Displacement):
         (n,) array, rad
         """
         cuts = np.append(self.cuts, self.cuts + self.period)
-        return np.union1d([low, high], cuts[(cuts > low) & (cuts < high)])
+        return distinct(cuts[(cuts > low) & (cuts < high)], [low, high])
 
     def sides(self, cuts: Sequence[Array]) -> tuple[Array, Array]:
         """Return the ends of stretches between `cuts`, rad, and lift, s' and s'' from within."""
@@ -384,7 +384,7 @@ def make_program(
     return Program(
         lift=lift,
         stretches=tuple(stretches),
-        cuts=np.union1d(lift.knots, cuts),
+        cuts=distinct(lift.knots, cuts),
         errors=tuple(errors.tolist()),
         open=not closed,
     )

@@ -20,7 +20,7 @@ from gearcam.linkages.elements import BRANCH, REACH, Dyad, Element
 from gearcam.linkages.known import Known
 from gearcam.linkages.linkage import Linkage
 from gearcam.linkages.narrow import NARROWEST, Narrow, narrow_places, with_narrow_places
-from gearcam.numeric.arrays import Array, apart, opposite, snapped
+from gearcam.numeric.arrays import Array, apart, distinct, opposite, snapped
 from gearcam.numeric.piecewise import extremes_of_each
 from gearcam.numeric.roots import bracketed_root
 
@@ -180,7 +180,7 @@ def _passing(linkage: Linkage, number: int, dyad: Dyad, changes: tuple[float, ..
     reach = min([REACH, *_gaps(changes, (*knots.tolist(), *changes), period)])
     parts[number] = replace(dyad, changes=changes, period=period, reach=reach)
     if dyad.keeps == BRANCH:  # which has a corner there
-        knots = np.union1d(knots, [one for one in changes if knots[0] < one < knots[-1]])
+        knots = distinct(knots, [one for one in changes if knots[0] < one < knots[-1]])
     return replace(linkage, elements=tuple(parts), knots=knots)
 
 
@@ -286,7 +286,7 @@ def _crossings(room: Callable[[Array], Array], places: Array, values: Array) -> 
 def _ranges(linkage: Linkage, element: Element, zeros: Array) -> tuple[tuple[float, float], ...]:
     """Return the ranges between zeros over which all shares are positive."""
     low, high = linkage.span
-    edges = np.unique(np.concatenate([[low, high], zeros]))
+    edges = distinct(zeros, [low, high])
     middles = 0.5 * (edges[1:] + edges[:-1])
     known = linkage.at(middles, 0, element)
     open_ = np.all([share >= 0.0 for share in _shares(element, known)], axis=0)

@@ -28,7 +28,7 @@ from gearcam.linkages.known import GROUND, Known
 from gearcam.linkages.measures import TrackMeasures
 from gearcam.linkages.plane import Frame, towards
 from gearcam.numeric import jets
-from gearcam.numeric.arrays import Array, away
+from gearcam.numeric.arrays import Array, away, distinct
 from gearcam.numeric.jets import Jet
 
 if TYPE_CHECKING:
@@ -161,7 +161,7 @@ class GenevaWheel(ShortRepr, Element):
         shaft = TrackMeasures(law, knots, closed=False, highest=0)
         turns = self.switches(shaft.least().value, shaft.largest().value)
         found = np.concatenate([[], *(shaft.places_of(float(one)) for one in turns)])
-        return np.union1d(knots, away(found, knots, _SAME))
+        return distinct(knots, away(found, knots, _SAME))
 
     def knots_with(self, track: Callable[[str, Array, int], Jet], knots: Array) -> Array:
         """Return the knots with those where the pin enters or leaves (see `Element`)."""

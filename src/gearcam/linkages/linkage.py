@@ -14,7 +14,7 @@ from gearcam.base.display import ShortRepr
 from gearcam.linkages.elements import Dyad, Element
 from gearcam.linkages.known import GROUND, Known
 from gearcam.linkages.plane import conjugate, imaginary, real, rotation
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, distinct
 from gearcam.numeric.jets import Jet
 
 _DENSE: Final = 1441
@@ -222,7 +222,7 @@ class Linkage(ShortRepr):
     def _dense(self, name: str) -> tuple[Array, Array]:
         """Return the driver's angles, close together, and an angle there without jumps."""
         if name not in self._angles:
-            places = np.union1d(np.linspace(*self.span, _DENSE), self.knots)
+            places = distinct(np.linspace(*self.span, _DENSE), self.knots)
             values = np.asarray(self.track(name, places, 0).c[0])
             self._angles[name] = places, np.unwrap(values)
         return self._angles[name]

@@ -17,7 +17,7 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.linkages.elements import Law
 from gearcam.linkages.linkage import in_cycle
-from gearcam.numeric.arrays import Array, Ints, opposite, snapped
+from gearcam.numeric.arrays import Array, Ints, distinct, opposite, snapped
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import extremes_of_each
 from gearcam.numeric.roots import bracketed_root
@@ -167,7 +167,7 @@ def extremes_of_several(
     values = np.concatenate([one[1] for one in rough])
     cell = np.clip(np.searchsorted(grid, places), 1, len(grid) - 1)
     places = snapped(places, grid, _NEAR * np.diff(grid)[cell - 1])
-    free = np.flatnonzero(~np.isin(places, grid))
+    free = np.flatnonzero(grid[np.searchsorted(grid[:-1], places)] != places)  # on no knot
     if free.size:
         number, order = np.divmod(which[free], highest + 1)
         places[free], values[free] = _polished(derivatives, grid, (number, order), places[free])
@@ -359,7 +359,7 @@ class TrackMeasures(ShortRepr):
             (places[cells], places[cells + 1]),
             (values[cells], values[cells + 1]),
         )
-        return np.unique(np.concatenate([places[off == 0.0], roots]))
+        return distinct(places[off == 0.0], roots)
 
     def root_of(
         self,

@@ -15,7 +15,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from gearcam.linkages.linkage import in_cycle
-from gearcam.numeric.arrays import Array, Ints, apart, away, divided
+from gearcam.numeric.arrays import Array, Ints, apart, away, distinct, divided
 from gearcam.numeric.piecewise import LEAST_PLACES, places_between
 
 _STEPS: Final = 3.0
@@ -125,7 +125,7 @@ def _with(places: Array, knots: Array, step: float) -> Array:
     """Return knots with more places, between which a search has no wider step."""
     # more intervals have fewer points each
     even = divided(knots, np.ceil(np.diff(knots) / (LEAST_PLACES * step)).astype(int))
-    return np.union1d(even, away(places, even, _APART))
+    return distinct(even, away(places, even, _APART))
 
 
 def with_cells(cells: Sequence[Array], knots: Array) -> Array:
@@ -145,7 +145,7 @@ def with_cells(cells: Sequence[Array], knots: Array) -> Array:
     """
     step = float(np.diff(places_between(knots)).max())
     found = [end for ends in cells for end in _around(ends, step)]
-    return _with(np.unique(found), knots, step) if found else knots
+    return _with(distinct(np.array(found)), knots, step) if found else knots
 
 
 def _around(ends: Array, step: float) -> Iterator[float]:

@@ -19,7 +19,7 @@ from gearcam.linkages.measures import Extremes, Peak, extremes_of, least_and_lar
 from gearcam.linkages.nearest_circle import moved_center, nearest_center
 from gearcam.linkages.paths import PointPath
 from gearcam.linkages.plane import imaginary, square
-from gearcam.numeric.arrays import Array, Plane
+from gearcam.numeric.arrays import Array, Plane, distinct
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.roots import bracketed_root
 
@@ -220,7 +220,7 @@ def _knots(path: PointPath, begin: float, end: float) -> Array:
     turn = high - low
     turns = range(math.floor((begin - low) / turn), math.floor((end - low) / turn) + 1)
     knots = np.concatenate([np.asarray(path.knots) + k * turn for k in turns])
-    return np.unique(np.concatenate([[begin, end], knots[(begin < knots) & (knots < end)]]))
+    return distinct(knots[(begin < knots) & (knots < end)], [begin, end])
 
 
 def _samples(path: PointPath, knots: Array) -> Plane:

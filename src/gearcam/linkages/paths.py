@@ -19,7 +19,7 @@ from gearcam.linkages.elements import Law
 from gearcam.linkages.linkage import in_cycle
 from gearcam.linkages.measures import extremes_of
 from gearcam.linkages.plane import square
-from gearcam.numeric.arrays import Array, Mask, Plane
+from gearcam.numeric.arrays import Array, Mask, Plane, distinct
 from gearcam.numeric.crossings import chord_shares, near_chords
 from gearcam.numeric.gauss import Integral, integral
 from gearcam.numeric.jets import Jet
@@ -164,7 +164,7 @@ class PointPath(ShortRepr):
         That of a point that stands still, or of one that goes to and fro in line with the origin,
         is nothing but rounding.
         """
-        edges = np.unique(np.concatenate([self.knots, self._slow[0]]))
+        edges = distinct(self.knots, self._slow[0])
         return integral(function, edges, _ROUNDING * size * float(edges[-1] - edges[0]))
 
     @cached_property
@@ -197,7 +197,7 @@ class PointPath(ShortRepr):
         Places where it touches itself in one direction, or is gone twice, are left out.
         """
         q = np.linspace(*self.span, _CHORDS + 1)
-        q = np.unique(np.concatenate([q, self.knots, self._slow[0]]))
+        q = distinct(q, self.knots, self._slow[0])
         points = np.asarray(self.track(q, 0).c[0])
         if self.closed:
             points[-1] = points[0]

@@ -21,7 +21,7 @@ from gearcam.linkages.efforts import GRAVITY, INERTIA, LOADS, PARTS, SPRINGS, Ef
 from gearcam.linkages.elements import Dyad, Element, GivenMotion, Law
 from gearcam.linkages.linkage import Linkage
 from gearcam.linkages.measures import Peak, least_and_largest
-from gearcam.numeric.arrays import Array, snapped
+from gearcam.numeric.arrays import Array, distinct, snapped
 from gearcam.numeric.chebyshev import FIRST_CUTS, NotSmoothError, expand
 from gearcam.numeric.gauss import gauss_cells
 from gearcam.numeric.jets import Jet
@@ -80,7 +80,7 @@ class VirtualWork(ShortRepr):
         more = np.asarray(self.more_knots, dtype=float)
         ends = [one.active.ends(low, high) for one in self.efforts if one.active is not None]
         inner = more[(more > low) & (more < high)]
-        return np.unique(np.concatenate([self.linkage.knots, inner, *ends]))
+        return distinct(self.linkage.knots, inner, *ends)
 
     def parts(self, q: Array, order: int = 0) -> dict[str, Jet]:
         """Return the driver's moment for each sort of effort, N mm.
@@ -157,7 +157,7 @@ class VirtualWork(ShortRepr):
         try:
             return expand(lambda q: np.asarray(self.moment(q).c[0]), self.knots, _RESOLVED).knots
         except NotSmoothError:
-            return np.union1d(np.linspace(*self.linkage.span, FIRST_CUTS + 1), self.knots)
+            return distinct(np.linspace(*self.linkage.span, FIRST_CUTS + 1), self.knots)
 
     @cached_property
     def _peaks(self) -> tuple[Peak, Peak]:

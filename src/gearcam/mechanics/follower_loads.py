@@ -40,7 +40,7 @@ from gearcam.mechanics.load import LoadSpec
 from gearcam.mechanics.mass import MassSpec
 from gearcam.mechanics.spring import SpringSpec
 from gearcam.mechanics.supports import Support, TotalLoad
-from gearcam.numeric.arrays import Array, Plane
+from gearcam.numeric.arrays import Array, Plane, distinct
 
 _SAMPLES = 65
 """Samples of each smooth piece; between neighbours there is one extreme at most, as a rule."""
@@ -386,7 +386,7 @@ class Loads(ShortRepr):
         self, way: float, value: Callable[[DrivenMotion], Array]
     ) -> tuple[float, float, float]:
         """Return the largest value on one way (see `_largest`)."""
-        cuts = np.unique(np.concatenate([self.program.cuts, self.program.knots, *self._breaks]))
+        cuts = distinct(self.program.cuts, self.program.knots, *self._breaks)
         low, high = cuts[:-1, None], np.nextafter(cuts[1:, None], -np.inf)
         x = low + (high - low) * np.linspace(0.0, 1.0, _SAMPLES)
         found = value(self.motion(x.ravel(), way)).reshape(x.shape)

@@ -21,9 +21,10 @@ from gearcam.gears.track import WHEELS, Wheel
 from gearcam.meshing.contact import outermost, sought
 from gearcam.meshing.placed_flanks import PlacedFlanks
 from gearcam.numeric.arrays import Array, Ints, Mask
+from gearcam.numeric.gauss import legendre_rule
 from gearcam.numeric.roots import damped_newton, newton_in_bracket
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
+_NODES, _WEIGHTS = legendre_rule(24)
 
 _SMALL = 1e-9
 """Step, in pitches, at which the search for a common normal ends."""

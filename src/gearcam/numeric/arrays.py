@@ -14,6 +14,7 @@ Plane = NDArray[np.complex128]
 """Points or directions in the plane, ``x + 1j*y``."""
 
 ArrayOrPlane = TypeVar("ArrayOrPlane", Array, Plane)
+ScalarT = TypeVar("ScalarT", bound=np.generic)
 
 
 _BLOCK = 31 << 20
@@ -46,6 +47,32 @@ def complex_of(real: Array, imag: Array) -> Plane:
     result = np.empty(np.shape(real), dtype=np.complex128)
     result.real, result.imag = real, imag
     return result
+
+
+def distinct(first: NDArray[ScalarT], *others: ArrayLike) -> NDArray[ScalarT]:
+    """Return all values of arrays, rising, each once.
+
+    `numpy.unique` and `numpy.union1d` do the same, but the first call loads `numpy.ma`, which takes
+    longer than all else that is done with such values in a build.
+
+    Parameters
+    ----------
+    first : array
+        Of any shape.
+    *others : array_like
+        More of them, of any shapes; their values are of the first array's type.
+
+    Returns
+    -------
+    (n,) array
+        Empty if all are empty. Values are compared exactly; none may be NaN, which equals nothing.
+    """
+    values = np.concatenate([np.ravel(one) for one in (first, *others)])
+    values.sort()
+    new = np.ones(values.shape, dtype=np.bool_)
+    new[1:] = values[1:] != values[:-1]
+    made: NDArray[ScalarT] = values[new]
+    return made
 
 
 def apart(rising: Array, least: float) -> Array:

@@ -18,7 +18,8 @@ from numpy.typing import ArrayLike
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import GearcamError
-from gearcam.numeric.arrays import Array, divided
+from gearcam.numeric.arrays import Array, distinct, divided
+from gearcam.numeric.gauss import legendre_rule
 
 _DEGREE = 8
 
@@ -270,8 +271,8 @@ def missed(
         The largest difference at the ends and in the middles of the intervals, where the truncation
         error of an expansion is largest; includes the rounding of both.
     """
-    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
-    grid = np.union1d(knots, 0.5 * (knots[:-1] + knots[1:]))
+    nodes, weights = legendre_rule(_NODES)
+    grid = distinct(knots, 0.5 * (knots[:-1] + knots[1:]))
     half = 0.5 * np.diff(grid)
     x = 0.5 * (grid[:-1] + grid[1:]) + half * nodes[:, None]
     parts = half * (weights @ integrand(x.ravel()).reshape(x.shape))

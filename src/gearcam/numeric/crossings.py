@@ -20,11 +20,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
-from gearcam.numeric.arrays import Array, Ints, Mask, Plane, as_pairs
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.contour import polygon_area
 from gearcam.numeric.sampling import Curves
 
@@ -383,6 +384,12 @@ _TOGETHER = 64
 """Number of boxes compared all with all: faster than halving so few."""
 
 
+@lru_cache
+def _all_pairs(count: int) -> tuple[Ints, Ints]:
+    """Return the numbers of all pairs of so many, each with itself too."""
+    return np.triu_indices(count)
+
+
 def near_chords(starts: Plane, ends: Plane) -> tuple[Ints, Ints]:
     """Return the pairs of chords whose bounding boxes overlap, by repeated halving.
 
@@ -397,21 +404,24 @@ def near_chords(starts: Plane, ends: Plane) -> tuple[Ints, Ints]:
         Numbers of the chords, ``one <= two``.
     """
     size = 1 << (len(starts) - 1).bit_length()
-    rest = np.full((size - len(starts), 2), np.inf)
-    corners = as_pairs(starts), as_pairs(ends)
-    low = np.concatenate([np.minimum(*corners), rest])
-    high = np.concatenate([np.maximum(*corners), -rest])
+    low, high = np.full((2, size), np.inf), np.full((2, size), -np.inf)
+    for axis, corners in enumerate(((starts.real, ends.real), (starts.imag, ends.imag))):
+        np.minimum(*corners, out=low[axis, : len(starts)])
+        np.maximum(*corners, out=high[axis, : len(starts)])
     levels = [(low, high)]
-    while len(low) > _TOGETHER:
-        low, high = np.minimum(low[::2], low[1::2]), np.maximum(high[::2], high[1::2])
+    while low.shape[1] > _TOGETHER:
+        low, high = np.minimum(low[:, ::2], low[:, 1::2]), np.maximum(high[:, ::2], high[:, 1::2])
         levels.append((low, high))
-    one, two = np.triu_indices(len(low))
+    one, two = _all_pairs(low.shape[1])
     for number, (low, high) in enumerate(reversed(levels)):
         if number:  # each in two
             one = (2 * one[:, None] + [0, 0, 1, 1]).ravel()
             two = (2 * two[:, None] + [0, 1, 0, 1]).ravel()
-        near = (low[one] <= high[two]).all(axis=1) & (low[two] <= high[one]).all(axis=1)
-        near &= one <= two
+            once = one <= two
+            one, two = one[once], two[once]
+        near = np.ones(one.shape, dtype=np.bool_)
+        for least, most in zip(low, high, strict=True):  # by axis: faster than reducing pairs
+            near &= (least[one] <= most[two]) & (least[two] <= most[one])
         one, two = one[near], two[near]
     return one, two
 

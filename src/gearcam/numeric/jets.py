@@ -132,8 +132,8 @@ class Jet:
     def __pow__(self, exponent: Jet | Value) -> Jet:
         if isinstance(exponent, Jet):
             if all(not np.any(value) for value in exponent.c[1:]):
-                values = np.unique(exponent.c[0])
-                if values.size == 1:
+                values = np.ravel(exponent.c[0])
+                if values.size and np.all(values == values[0]):
                     return self ** float(values[0])
             return exp(log(self) * exponent)
         if float(exponent).is_integer() and abs(exponent) <= _WHOLE:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.base.display import ShortRepr
-from gearcam.numeric.arrays import Array, Ints, opposite
+from gearcam.numeric.arrays import Array, Ints, distinct, opposite
 from gearcam.numeric.chebyshev import FIRST_CUTS, Expansion, expand
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.roots import bracketed_root
@@ -381,11 +381,11 @@ def with_both_sides(places: Array, knots: Array) -> Array:
         Rising: for a knot the last number before it, and the knot itself. Between close knots
         points are added, unless there are very many.
     """
-    inside = np.unique(knots[(knots > places[0]) & (knots < places[-1])])
+    inside = distinct(knots[(knots > places[0]) & (knots < places[-1])])
     edges = np.concatenate([places[:1], inside, places[-1:]])
     gaps = np.diff(edges)
     each = min(_BETWEEN, _ADDED // gaps.size)
     narrow = np.diff(np.searchsorted(places, edges)) < each
     more = edges[:-1, None] + gaps[:, None] * np.arange(1, each) / max(each, 1)
     sides = [inside, np.nextafter(inside, -np.inf), more[narrow].ravel()]
-    return np.union1d(places, np.concatenate(sides))
+    return distinct(places, *sides)

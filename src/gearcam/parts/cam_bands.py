@@ -18,7 +18,7 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.numeric.arrays import Array, divided
+from gearcam.numeric.arrays import Array, distinct, divided
 from gearcam.numeric.nets import SplineNet
 from gearcam.numeric.roots import bracketed_root
 from gearcam.parts.bands import Band, BandedBody, FlatBand, RoundBand, SplineBand
@@ -153,7 +153,7 @@ def _apart(ends: Array, more: list[float]) -> Array:
     """Return the ends of sectors with those of others that are not next to one of them."""
     for place in sorted(more):
         if np.abs(ends - place).min() > _APART:
-            ends = np.union1d(ends, [place])
+            ends = distinct(ends, [place])
     return ends
 
 

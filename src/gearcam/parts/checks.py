@@ -9,20 +9,29 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf
-from typing import Any
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.findings import ROUNDING, Remark, check
 from gearcam.base.numerals import decimal, formatted
 from gearcam.base.quantities import LENGTH, Param
-from gearcam.numeric.arrays import as_pairs
+from gearcam.numeric.arrays import Plane, as_pairs
+from gearcam.numeric.polygons import nearest
 from gearcam.parts.blank import KIND
 from gearcam.parts.body import Edge, Part
 from gearcam.parts.shapes import Circle
 from gearcam.parts.tools import UNLIMITED, ToolLimits, tool_limits
 
+if TYPE_CHECKING:
+    from shapely import LinearRing
+
 _FINE = 0.01
 """Sagitta, in tolerances, of the chords of round outsides from which walls are measured."""
+
+_ON_HUB = 1024
+"""Number of chords of a hub's edge."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -88,56 +97,75 @@ def thin_wall(subject: CheckedParts, limit: float) -> Iterator[Remark]:
             )
 
 
+class _Chorded:
+    """The chords of an edge, from which walls are measured.
+
+    Parameters
+    ----------
+    points : (n,) complex array, mm
+    """
+
+    def __init__(self, points: Plane) -> None:
+        self.points = points
+
+    @cached_property
+    def ring(self) -> LinearRing:
+        """The chords, prepared for distances."""
+        from shapely import LinearRing, prepare
+
+        made = LinearRing(as_pairs(self.points))
+        prepare(made)
+        return made
+
+    def to(self, other: _Chorded | Circle) -> float:
+        """Return the distance of another edge, or of a circle inside or outside this one, mm."""
+        if isinstance(other, Circle):
+            return nearest(self.points, other.center) - 0.5 * other.diameter
+        from shapely import length, shortest_line  # by a spatial index
+
+        return float(length(shortest_line(other.ring, self.ring)))
+
+
 def _walls(part: Part) -> Iterator[tuple[float, str]]:
     """Yield thickness and place of every wall."""
-    from shapely import Point
 
-    # a circle is its centre, its radius away
-    rings = [
-        (Point(shape.center.real, shape.center.imag), 0.5 * shape.diameter)
-        if isinstance(shape := opening.shape, Circle)
-        else (_ring(shape, part.tolerance), 0.0)
-        for opening in part.openings
+    def edge_of(edge: Edge) -> _Chorded:
+        return _Chorded(edge.polyline(part.tolerance))
+
+    shapes = [
+        one.shape if isinstance(one.shape, Circle) else edge_of(one.shape) for one in part.openings
     ]
-    edges: list[tuple[Any, str]] = [
-        (_ring(edge, _FINE * part.tolerance), what)
+    edges = [
+        (_Chorded(edge.polyline(_FINE * part.tolerance)), what)
         for what, ones in (("outline", part.contours), ("roots", part.inner))
         for edge in ones
     ]
     if part.hub is not None:
-        circle = Point(0.0, 0.0).buffer(0.5 * part.hub.diameter, quad_segs=256).boundary
-        edges.append((circle, "hub's edge"))
-    for number, (opening, (ring, radius)) in enumerate(zip(part.openings, rings, strict=True)):
-        for (other, more), name in zip(rings[:number], part.openings[:number], strict=True):
-            wall = _apart(ring, other) - radius - more
-            yield max(wall, 0.0), f"{opening.name} and the {name.name}"
+        turned: Plane = np.exp(2j * np.pi * np.arange(_ON_HUB) / _ON_HUB)
+        edges.append((_Chorded(0.5 * part.hub.diameter * turned), "hub's edge"))
+    for number, (opening, shape) in enumerate(zip(part.openings, shapes, strict=True)):
+        for other, named in zip(shapes[:number], part.openings[:number], strict=True):
+            yield max(_between(shape, other), 0.0), f"{opening.name} and the {named.name}"
         for edge, what in edges:
-            yield max(_apart(ring, edge) - radius, 0.0), f"{opening.name} and the {what}"
+            yield max(edge.to(shape), 0.0), f"{opening.name} and the {what}"
     for recess in part.recesses:
-        rim = _ring(recess.edge, part.tolerance)
-        yield _apart(rim, edges[0][0]), "groove and the outline"
+        rim = edge_of(recess.edge)
+        yield rim.to(edges[0][0]), "groove and the outline"
         floor = recess.low if recess.front else part.width - recess.high
         yield floor, "groove's floor and the other face"
-        islands = [_ring(one.shape, part.tolerance) for one in recess.openings] or [rim]
-        for opening, (ring, radius) in zip(part.openings, rings, strict=True):
+        islands = [edge_of(one.shape) for one in recess.openings] or [rim]
+        for opening, shape in zip(part.openings, shapes, strict=True):
             for island in islands:
-                wall = _apart(ring, island) - radius
-                yield max(wall, 0.0), f"{opening.name} and the groove"
+                yield max(island.to(shape), 0.0), f"{opening.name} and the groove"
 
 
-def _ring(edge: Edge, sagitta: float) -> Any:
-    """Return the chords of an edge."""
-    from shapely import LinearRing
-
-    return LinearRing(as_pairs(edge.polyline(sagitta)))
-
-
-def _apart(one: Any, other: Any) -> float:
-    """Return the distance of two edges or points, mm, by a spatial index."""
-    from shapely import length, prepare, shortest_line
-
-    prepare(one)
-    return float(length(shortest_line(one, other)))
+def _between(one: _Chorded | Circle, other: _Chorded | Circle) -> float:
+    """Return the distance of two openings, mm."""
+    if isinstance(one, _Chorded):
+        return one.to(other)
+    if isinstance(other, _Chorded):
+        return other.to(one)
+    return abs(one.center - other.center) - 0.5 * (one.diameter + other.diameter)
 
 
 @check("wide-kerf", kind=KIND, relation="at most", severity=("warning", "error"), unit="mm")

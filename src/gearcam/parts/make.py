@@ -10,9 +10,10 @@ from collections.abc import Callable, Sequence
 
 from gearcam.base.adjustments import Adjustment
 from gearcam.numeric.contour import Contour
+from gearcam.numeric.polygons import room_around
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Hub, Mark, Part, Recess
-from gearcam.parts.openings import Workpiece, openings, solid_of
+from gearcam.parts.openings import Stock, Workpiece, openings
 from gearcam.parts.shapes import Circle
 
 
@@ -115,9 +116,7 @@ def finished(contour: Contour, blank: WheelBlank, work: Workpiece) -> Contour:
 
 
 def _demand_within(hub: Hub, contours: Sequence[Contour | Circle], work: Workpiece) -> None:
-    from shapely import Point
-
-    room = 2.0 * solid_of(contours, (), work).boundary.distance(Point(0.0, 0.0))
+    room = 2.0 * Stock(contours=contours, work=work).room(0j)
     if hub.diameter >= room:
         key = work.key("hub_diameter_mm")
         what = f"the hub reaches {work.within if work.wheel is None else 'the roots of the teeth'}"
@@ -128,12 +127,9 @@ def _demand_within(hub: Hub, contours: Sequence[Contour | Circle], work: Workpie
 
 def _demand_marks(part: Part, blank: WheelBlank, work: Workpiece) -> None:
     """Refuse a mark that meets an opening, the hub or the outline."""
-    from shapely import Point
-
     for mark in part.marks:
-        middle = Point(mark.center.real, mark.center.imag)
-        radius = 0.5 * mark.diameter
-        room = part.region.boundary.distance(middle) if part.region.contains(middle) else 0.0
+        outline, *holes = (edge.polyline(part.tolerance) for edge in part.steps[0].edges)
+        radius, room = 0.5 * mark.diameter, room_around(mark.center, [outline], holes)
         if part.hub is not None:
             room = min(room, abs(mark.center) - 0.5 * part.hub.diameter)
         if room < radius:

@@ -17,15 +17,18 @@ import cmath
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from gearcam.base.adjustments import Adjustment
+from gearcam.base.display import ShortRepr
 from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.base.quantities import params_of
-from gearcam.numeric.arrays import Array, as_pairs
+from gearcam.numeric.arrays import Array, Plane, as_pairs
 from gearcam.numeric.contour import Contour
+from gearcam.numeric.polygons import room_around
 from gearcam.parts.blank import WheelBlank, serving
 from gearcam.parts.body import Edge, Opening
 from gearcam.parts.shapes import Circle, Loop
@@ -122,6 +125,53 @@ class Workpiece:
         return beyond_limit(what, where, value, limit, note, adjustments=adjustments, unit="mm")
 
 
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Stock(ShortRepr):
+    """What openings go through: the region common to all steps of a wheel or a ring.
+
+    Parameters
+    ----------
+    contours : sequence of Contour or Circle
+        The outlines of the steps.
+    work : Workpiece
+        The wheel.
+    inner : sequence of Contour
+        For a ring: the inner edges of the steps.
+    """
+
+    contours: Sequence[Edge]
+    work: Workpiece
+    inner: Sequence[Edge] = ()
+
+    @cached_property
+    def region(self) -> Polygon:
+        """The region, without openings."""
+        from shapely import Polygon, intersection_all
+
+        outlines, holes = self._edges
+        regions = [
+            Polygon(as_pairs(edge), [as_pairs(hole) for hole in at])
+            for edge, at in zip(
+                outlines, [[hole] for hole in holes] or [[]] * len(outlines), strict=True
+            )
+        ]
+        made: Any = intersection_all(regions)
+        return made
+
+    def room(self, place: complex) -> float:
+        """Return the distance of a place, mm, from the region's boundary, 0 outside."""
+        return room_around(place, *self._edges)
+
+    @cached_property
+    def _edges(self) -> tuple[list[Plane], list[Plane]]:
+        """Points of the outlines, and those of the inner edges."""
+        outlines, holes = (
+            [one.polyline(self.work.sagitta) for one in edges]
+            for edges in (self.contours, self.inner)
+        )
+        return outlines, holes
+
+
 def bore(blank: WheelBlank) -> Circle | Loop:
     """Return the bore with its keyway or flat.
 
@@ -167,33 +217,6 @@ def _bolts(blank: WheelBlank) -> Iterator[Opening]:
         yield Opening(kind="HOLE", shape=shape, name=f"bolt hole {number + 1}")
 
 
-def solid_of(edges: Sequence[Edge], inner: Sequence[Edge], work: Workpiece) -> Polygon:
-    """Return the region common to all steps of a wheel or a ring.
-
-    Parameters
-    ----------
-    edges : sequence of Contour or Circle
-        Their outlines.
-    inner : sequence of Contour
-        For a ring: their inner edges.
-    work : Workpiece
-        The wheel.
-
-    Returns
-    -------
-    Polygon
-        Without openings.
-    """
-    from shapely import Polygon, intersection_all
-
-    regions = [
-        Polygon(work.points(edge), [work.points(hole) for hole in at])
-        for edge, at in zip(edges, [[hole] for hole in inner] or [[]] * len(edges), strict=True)
-    ]
-    made: Any = intersection_all(regions)
-    return made
-
-
 def openings(
     blank: WheelBlank, contours: Sequence[Edge], work: Workpiece, inner: Sequence[Edge] = ()
 ) -> tuple[Opening, ...]:
@@ -220,24 +243,23 @@ def openings(
     InfeasibleError
         If they meet each other, the hub's edge or the outline, or have no space.
     """
-    solid = solid_of(contours, inner, work)
+    stock = Stock(contours=contours, work=work, inner=inner)
     wide = blank.widened
     made = [Opening(kind="BORE", shape=bore(wide), name="bore")] if blank.bore else []
     made += _bolts(wide)
     if blank.stop_pin:
         chord = max((one.tolerance for one in contours if isinstance(one, Contour)), default=0.0)
-        made.append(_slot(blank, solid, work, chord))
+        made.append(_slot(blank, stock.region, work, chord))
     bolts = {"bolt_circle_mm": blank.bolt_circle}
-    demand_apart(made, solid, work, bolts, hub=blank.hub_diameter, widening=blank.widening)
+    demand_apart(made, stock, bolts, hub=blank.hub_diameter, widening=blank.widening)
     if blank.lightening_holes:
-        made += _lightening(wide, solid, made, work)
+        made += _lightening(wide, stock.region, made, work)
     return tuple(made)
 
 
 def demand_apart(
     found: Sequence[Opening],
-    solid: Polygon,
-    work: Workpiece,
+    stock: Stock,
     places: Mapping[str, float],
     *,
     hub: float = 0.0,
@@ -249,10 +271,8 @@ def demand_apart(
     ----------
     found : sequence of Opening
         The openings.
-    solid : shapely.Polygon
-        The region they go through.
-    work : Workpiece
-        The part, for messages.
+    stock : Stock
+        What they go through.
     places : mapping of str to float
         Keys of ``[blank]`` that position the bolts, with their values, mm.
     hub : float, mm
@@ -265,41 +285,58 @@ def demand_apart(
     InfeasibleError
         If any two meet.
     """
+    # chords of openings that touch each other may be apart by this
+    gap = 2.0 * stock.work.sagitta
+    if _plainly_apart(found, stock, 2.0 * gap, hub):
+        return
     from shapely import Polygon
 
-    edges = [work.points(opening.shape) for opening in found]
+    edges = [stock.work.points(opening.shape) for opening in found]
     regions = [Polygon(edge) for edge in edges]
-    # chords of openings that touch each other may be apart by this
-    gap = 2.0 * work.sagitta
+    solid = stock.region
     for number, (opening, edge, region) in enumerate(zip(found, edges, regions, strict=True)):
         if not solid.contains(region) or solid.boundary.dwithin(region, gap):
-            raise _no_room(opening, solid, work.within, work, widening, places)
+            raise _no_room(opening, stock, stock.work.within, widening, places)
         away = np.hypot(*edge.T)
         if hub and away.min() <= 0.5 * hub <= away.max():
-            raise _no_room(opening, solid, "the edge of the hub", work, widening, places)
+            raise _no_room(opening, stock, "the edge of the hub", widening, places)
         for other, second in zip(found[:number], regions[:number], strict=True):
             if region.dwithin(second, gap):
-                raise _no_room(opening, solid, f"the {other.name}", work, widening, places)
+                raise _no_room(opening, stock, f"the {other.name}", widening, places)
+
+
+def _plainly_apart(found: Sequence[Opening], stock: Stock, gap: float, hub: float) -> bool:
+    """Return whether all openings are round, and farther than `gap`, mm, from all they may meet."""
+    round_ones: list[Circle] = []
+    for opening in found:
+        one = opening.shape
+        if not isinstance(one, Circle):
+            return False
+        radius = 0.5 * one.diameter
+        rooms = [stock.room(one.center)]
+        rooms += [abs(other.center - one.center) - 0.5 * other.diameter for other in round_ones]
+        if hub:
+            rooms.append(abs(abs(one.center) - 0.5 * hub))
+        if min(rooms) <= radius + gap:
+            return False
+        round_ones.append(one)
+    return True
 
 
 def _no_room(
     opening: Opening,
-    solid: Polygon,
+    stock: Stock,
     what: str,
-    work: Workpiece,
     widening: float,
     places: Mapping[str, float],
 ) -> InfeasibleError:
     """Return the refusal of an opening that meets something; diameters as given in the design."""
-    from shapely import Point
-
-    shape, value, limit = opening.shape, None, None
+    work, shape, value, limit = stock.work, opening.shape, None, None
     note = "they must not overlap"
     if isinstance(shape, Circle) and what == work.within:
-        center = Point(shape.center.real, shape.center.imag)
-        inside = solid.contains(center)
+        room = stock.room(shape.center)
         value = shape.diameter - widening
-        limit = 2.0 * solid.boundary.distance(center) - widening if inside else None
+        limit = 2.0 * room - widening if room else None
         note = f"its centre lies outside {what}"
         if limit:
             note = "the limit is the free space around its centre"

@@ -21,7 +21,7 @@ from gearcam.numeric.arrays import Array, as_pairs
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Edge
-from gearcam.parts.openings import Workpiece
+from gearcam.parts.openings import Stock
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -54,8 +54,7 @@ def is_around(outside: Edge, inner: Contour) -> bool:
 
 def demand_bolts(
     blank: WheelBlank,
-    solid: Polygon,
-    work: Workpiece,
+    stock: Stock,
     wall: float,
     outside: Callable[[float], dict[str, object]],
 ) -> None:
@@ -65,10 +64,8 @@ def demand_bolts(
     ----------
     blank : WheelBlank
         With the bolts.
-    solid : Polygon
+    stock : Stock
         The ring without them, in its own frame.
-    work : Workpiece
-        The ring, for messages.
     wall : float, mm
         Wall that remedies leave on both sides.
     outside : callable
@@ -81,6 +78,7 @@ def demand_bolts(
     """
     if not blank.bolts:
         return
+    work, solid = stock.work, stock.region
     wide, taken = blank.bolt_diameter + blank.widening, 2.0 * wall + blank.widening
     room = float(_rooms(blank, solid, np.array([blank.bolt_circle]))[0])
     if wide < room:

@@ -20,7 +20,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.numeric.arrays import Array, Ints, Plane
+from gearcam.numeric.arrays import Array, Ints, Plane, distinct
 from gearcam.numeric.pose import Pose, SpacePose
 from gearcam.pictures.drawings import Feature, chains
 
@@ -233,4 +233,4 @@ def _outmost(points: Plane) -> Plane:
         return points
     angles = 2.0 * np.pi * np.arange(_DIRECTIONS)[:, None] / _DIRECTIONS
     along = np.cos(angles) * points.real + np.sin(angles) * points.imag
-    return points[np.unique(along.argmax(axis=1))]
+    return points[distinct(along.argmax(axis=1))]

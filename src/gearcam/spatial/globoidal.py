@@ -31,7 +31,7 @@ import numpy as np
 
 from gearcam.laws.indexing import IndexProgram
 from gearcam.laws.phases_of_lift import TURN
-from gearcam.numeric.arrays import Array, Mask
+from gearcam.numeric.arrays import Array, Mask, distinct
 from gearcam.numeric.roots import bracketed_root
 from gearcam.spatial.envelope import RollerAxis, RollerContact, touched
 from gearcam.spatial.extremes import Box, OfPlaces, Spot, boxes_between, lowest
@@ -187,7 +187,7 @@ class GloboidalCam(RollerCam):
             return boxes_between(self.program.cuts, (self.top, self.reach))
         start, end = self.span
         turns = range(math.floor(start / TURN), math.ceil(end / TURN))
-        cuts = np.unique(np.concatenate([TURN * k + self.program.cuts for k in turns]))
+        cuts = distinct(*(TURN * k + self.program.cuts for k in turns))
         within = cuts[(cuts > start) & (cuts < end)]
         return boxes_between(np.array([start, *within, end]), self.places)
 

@@ -56,7 +56,7 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import ABOVE, InfeasibleError, beyond_limit
-from gearcam.numeric.arrays import Array, Ints, Mask, divided
+from gearcam.numeric.arrays import Array, Ints, Mask, distinct, divided
 from gearcam.spatial.cam import SpatialCam
 from gearcam.spatial.tool import MillSpec
 
@@ -403,7 +403,7 @@ class _Mill:
                 left, cut = self.errors(at, straight, lane, layer)
                 return theta, placed, np.array([left, cut, off.max()]) / _SEEN
             middle = _rounded(0.5 * (theta[:-1] + theta[1:])[wide])
-            theta = np.unique(np.append(theta, middle))
+            theta = distinct(theta, middle)
 
     def _kept(self, theta: Array, placed: Array) -> Array:
         """Return places in which those stay the same that are reached too slowly."""

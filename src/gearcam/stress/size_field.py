@@ -15,7 +15,7 @@ from typing import Any, Final
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.numeric.arrays import Array, Plane, apart, as_pairs
+from gearcam.numeric.arrays import Array, Plane, apart, as_pairs, distinct
 from gearcam.stress.region import BoundaryCurve, Region
 
 GROWTH: Final = 0.3
@@ -84,7 +84,7 @@ class SizeField(ShortRepr):
 
         step = np.floor(np.log(self.sizes / self.largest) / math.log(_BIN)).astype(np.int64)
         made: list[tuple[float, Any]] = []
-        for number in np.unique(step[step < 0]):
+        for number in distinct(step[step < 0]):
             size, points = self.largest * _BIN ** float(number), self.points[step == number]
             points = points[_field(made, points, self.largest) > size]
             if len(points):

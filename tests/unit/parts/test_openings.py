@@ -18,7 +18,7 @@ from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Mark, Opening, Part
 from gearcam.parts.make import finished, make_part
 from gearcam.parts.marks import timing_mark
-from gearcam.parts.openings import Workpiece, bore, openings
+from gearcam.parts.openings import Stock, Workpiece, bore, openings
 from gearcam.parts.shapes import Circle, Loop
 from helpers_contour import disc_contour, gear_contour
 from helpers_pairs import profile
@@ -383,3 +383,59 @@ def test_a_mark_that_is_asked_for_takes_a_third_of_the_rim() -> None:
     assert timing_mark(100.0, 0.0, 5.0, 6.25, 10.0, bore_reach=93.74).diameter > 0
     with pytest.raises(InfeasibleError, match="no room for a timing mark"):
         timing_mark(100.0, 0.0, 5.0, 6.25, 10.0, bore_reach=93.76)
+
+
+def round_holes(random: np.random.Generator) -> WheelBlank:
+    """Bore, bolts and hub, with room or without."""
+    hub = random.random() < 0.5
+    return blank(
+        bore_diameter=float(random.choice([0.0, 5.0, 20.0, 30.0])),
+        bolts=int(random.integers(0, 14)),
+        bolt_circle=round(random.uniform(15.0, 150.0), 1),
+        bolt_diameter=round(random.uniform(2.0, 15.0), 1),
+        **({"hub_diameter": round(random.uniform(20.0, 60.0), 1), "hub_front": 5.0} if hub else {}),
+    )
+
+
+def outcome(contours: Any, sizes: WheelBlank, inner: Any = ()) -> Any:
+    try:
+        found = openings(sizes, contours, PLACE, inner)
+    except InfeasibleError as error:
+        return str(error)
+    return [(one.name, one.shape.moments) for one in found]
+
+
+def test_round_openings_are_judged_as_by_their_regions(monkeypatch: pytest.MonkeyPatch) -> None:
+    random = np.random.default_rng(12)
+    disc = disc_contour(50.0)
+    stocks: list[Any] = [
+        ([gear_contour()], ()),
+        ([gear_contour(), disc], ()),
+        ([Circle(center=0j, diameter=120.0)], [disc_contour(20.0)]),
+    ]
+    jobs = [(*stocks[k % 3], round_holes(random)) for k in range(300)]
+    plain = [outcome(contours, sizes, inner) for contours, inner, sizes in jobs]
+    monkeypatch.setattr("gearcam.parts.openings._plainly_apart", lambda *_: False)
+    assert plain == [outcome(contours, sizes, inner) for contours, inner, sizes in jobs]
+    refused = [one for one in plain if isinstance(one, str)]
+    assert 50 < len(refused) < 250
+    for what in ("outline", "edge of the hub", "bore", "bolt hole 1"):
+        assert any(f"meets the {what}" in one for one in refused)
+
+
+def test_rooms_in_stock_are_those_of_its_region() -> None:
+    random = np.random.default_rng(13)
+    shifted = replace(disc_contour(45.0), points=disc_contour(45.0).points + 6.0)
+    hole = [disc_contour(20.0)]
+    for stock in (
+        Stock(contours=[gear_contour(), shifted], work=PLACE),
+        Stock(contours=[Circle(center=0j, diameter=120.0)], work=PLACE, inner=hole),
+    ):
+        inside = 0
+        for x, y in random.uniform(-70.0, 70.0, (300, 2)):
+            place = shapely.Point(x, y)
+            within = stock.region.contains(place)
+            wanted = stock.region.boundary.distance(place) if within else 0.0
+            assert stock.room(complex(x, y)) == pytest.approx(wanted, abs=1e-9)
+            inside += within
+        assert 60 < inside < 240

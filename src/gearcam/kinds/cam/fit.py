@@ -26,7 +26,7 @@ from gearcam.laws.lift_model import number_of
 from gearcam.laws.motion import MOTION_LAWS
 from gearcam.laws.motion_table import MotionTable, rows_of_turn
 from gearcam.laws.row_checks import stray_in
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, distinct
 from gearcam.pictures.charts import Chart, Limit, Line, MarkedPlace
 
 if TYPE_CHECKING:
@@ -283,7 +283,7 @@ class FittedDesign:
         rows, model = self.fitted.rows, self.fitted.model
         x = driver.scale * rows.theta
         ends = np.degrees(np.concatenate([model.starts, model.ends])) % 360.0
-        marks = tuple(MarkedPlace(label="phases", value=one) for one in np.unique(ends).tolist())
+        marks = tuple(MarkedPlace(label="phases", value=one) for one in distinct(ends).tolist())
         chart = partial(Chart, x=driver.label, marks=marks)
         noise = 2.0 * scale * rows.noise
         fitted = Line(label="fitted design", x=x, y=self.columns["s_fitted"])

@@ -21,6 +21,7 @@ from gearcam.kinds.under_load import UnderLoad
 from gearcam.mechanics.follower_loads import DrivenMotion
 from gearcam.mechanics.hertz import line_stiffness
 from gearcam.mechanics.statics import Statics, solve
+from gearcam.numeric.arrays import distinct
 from gearcam.numeric.narrowing import neighbours, summits
 from gearcam.numeric.piecewise import with_both_sides
 
@@ -207,7 +208,7 @@ class MovingCam:
         found = [program.knots, *(np.asarray(one.knots) for one in given)]
         if any(one.against for one in given):
             found.append(np.array([one.start for one in program.stretches]))
-        knots = np.unique(np.concatenate(found))
+        knots = distinct(*found)
         knots = knots[knots < program.period - _APART]
         knots = knots[np.diff(knots, prepend=0.0) > _APART * program.period]
         return np.concatenate([[0.0], knots, [program.period]])
@@ -300,7 +301,7 @@ class MovingCam:
         narrow = _NARROW * period
         _, found, _ = summits(lambda places: self.at(places).sought, self.at(x).sought,
                               *neighbours(x), narrow)  # fmt: skip
-        return np.union1d(x, found)
+        return distinct(x, found)
 
     @property
     def rows(self) -> Array:

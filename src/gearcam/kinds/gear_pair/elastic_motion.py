@@ -25,6 +25,7 @@ from gearcam.dynamics.tabled import Tabled
 from gearcam.kinds.gear_pair.pair_motion import MovingPair, PairRun
 from gearcam.kinds.gear_pair.stress import elasticity
 from gearcam.mechanics.wheel_load import WheelLoadSpec
+from gearcam.numeric.arrays import distinct
 from gearcam.numeric.narrowing import neighbours, peaks, summits
 from gearcam.pictures.charts import Chart, Line, MarkedPlace
 from gearcam.results.study import silent
@@ -244,9 +245,7 @@ class ElasticRun(PairRun):
         knots = stiff.knots
         knots = knots[(knots > machine.knots[0]) & (knots < machine.knots[-1])]
         inertia = machine.driver + machine.flywheel, machine.driven
-        table = Tabled(
-            rows, np.union1d(machine.knots, knots), _EXACT, closed=machine.closed, cuts=1
-        )
+        table = Tabled(rows, distinct(machine.knots, knots), _EXACT, closed=machine.closed, cuts=1)
         made = StiffPair(
             table=table,
             inertia=inertia,
@@ -306,7 +305,7 @@ class ElasticRun(PairRun):
             machine=self.rigid.machine,
             motor=self.rigid.motor,
             run=run,
-            knots=np.unique(np.concatenate([[low], inner, [high]])) - turned,
+            knots=distinct(inner, [low, high]) - turned,
             turned=turned,
         )
 

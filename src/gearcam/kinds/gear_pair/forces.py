@@ -23,6 +23,7 @@ from gearcam.meshing.force_checks import LoadedPair
 from gearcam.meshing.forces import tooth_forces
 from gearcam.meshing.settings import FORCES
 from gearcam.numeric import narrowing
+from gearcam.numeric.arrays import distinct
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Limit, Line, knot_marks
 from gearcam.results.study import StudyResult
@@ -202,8 +203,8 @@ class PairUnderLoad:
         even = np.linspace(0.0, self.travel, self.result.design.forces.steps + 1)
         back = self._given(even) < 0.0
         knots = self.knots(back=bool(back.any()), forth=not back.all())
-        x = np.unique(np.concatenate([even, knots, np.nextafter(knots, -np.inf)]))
-        return np.union1d(x, self._extremes(with_both_sides(x, knots)))
+        x = distinct(even, knots, np.nextafter(knots, -np.inf))
+        return distinct(x, self._extremes(with_both_sides(x, knots)))
 
     def knots(self, *, back: bool, forth: bool) -> Array:
         """Return where ratio, load or what carries jumps or bends, rad, within the travel.
@@ -223,7 +224,7 @@ class PairUnderLoad:
         # at the pitch point the sliding changes its direction, and so does friction
         ends += [pairs.track.angle(pairs.wheels[0].place(pairs.numbers)) for pairs in sides]
         knots = np.concatenate([self.result.knots, *(one.knots for one in self.loads), *ends])
-        return np.unique(knots[(knots > 0.0) & (knots < self.travel)])
+        return distinct(knots[(knots > 0.0) & (knots < self.travel)])
 
     def _extremes(self, x: Array) -> Array:
         """Return where the quantities of the facts are largest, or least, near angles `x`.
@@ -236,7 +237,7 @@ class PairUnderLoad:
 
         ends, width = narrowing.neighbours(x), _NARROW * self.travel
         which, places, values = narrowing.summits(sought, sought(x), *ends, width)
-        largest = [np.flatnonzero(which == number) for number in np.unique(which)]
+        largest = [np.flatnonzero(which == number) for number in distinct(which)]
         return places[[rows[np.argmax(values[rows])] for rows in largest]]
 
 

@@ -20,6 +20,7 @@ from gearcam.kinds.machine_motion import MachineRun, speed_powers
 from gearcam.laws.ratio.span import angle_text
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.settings import DYNAMIC_FORCES
+from gearcam.numeric.arrays import distinct
 from gearcam.numeric.chebyshev import NotSmoothError
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.numeric.roots import bracketed_root
@@ -104,7 +105,7 @@ def machine_of(under: PairUnderLoad, inertia: tuple[float, float], speed: float)
 
     knots = np.concatenate([[0.0], under.knots(back=rubs, forth=rubs), [under.travel]])
     if rubs:
-        knots = np.union1d(knots, _turns_of_friction(under, knots))
+        knots = distinct(knots, _turns_of_friction(under, knots))
     if under.turns:
         _demand_period(under, load, speed)
     coefficients = speed_powers(load, np.linspace(0.0, under.travel, _PROBES), speed)
@@ -240,7 +241,7 @@ class PairRun(MachineRun):
     def loaded(self) -> LoadedPair:
         """The forces of the teeth at the places of the table, and where they are most."""
         moving = MovingPair(self.result, self.mesh_torque)
-        return moving.loaded(np.union1d(self.places, self._most(moving)))
+        return moving.loaded(distinct(self.places, self._most(moving)))
 
     def _most(self, moving: MovingPair) -> Array:
         """Return angles, rad, at which the teeth may have most, in each turn."""

@@ -27,7 +27,7 @@ from gearcam.parts.checks import CheckedParts
 from gearcam.parts.make import make_part
 from gearcam.parts.marks import timing_mark
 from gearcam.parts.mass import quadrature_error
-from gearcam.parts.openings import Workpiece, solid_of
+from gearcam.parts.openings import Stock, Workpiece
 from gearcam.parts.rim import demand_bolts, is_around
 from gearcam.parts.shapes import Circle
 
@@ -106,7 +106,7 @@ def _ring(gears: list[Gear], design: GearPairDesign) -> Part:
     if inner and not all(map(is_around, contours, inner)):
         tolerance = gear.profile.tolerance
         raise _crossing_chords(rim, tolerance, larger(roots + _CHORDS * tolerance))
-    demand_bolts(blank, solid_of(contours, inner, work), work, wall, larger)
+    demand_bolts(blank, Stock(contours=contours, work=work, inner=inner), wall, larger)
     return make_part(
         gear.name,
         contours,

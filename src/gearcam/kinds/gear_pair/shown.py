@@ -27,6 +27,9 @@ if TYPE_CHECKING:
     from gearcam.gears.pair import Gear
     from gearcam.kinds.gear_pair.result import GearPairResult
 
+_ALIKE: Final = 1e-9
+"""Tips whose thickness differs by less than this, in modules, are equal."""
+
 
 def facts(result: GearPairResult) -> Facts:
     """Return the facts of a pair, its `result`."""
@@ -135,8 +138,11 @@ def _mesh(result: GearPairResult) -> Tree:
     subject, limits, module = result.subject, result.design.limits, result.pair.module
     least = limit_of(KIND, "contact-ratio", limits)
     thin = limit_of(KIND, "thin-tip", limits) * module
-    gear = min(result.gears, key=lambda gear: gear.profile.tip_thickness.min())
-    tooth = int(gear.profile.tip_thickness.argmin()) + 1
+    tips = np.concatenate([gear.profile.tip_thickness for gear in result.gears])
+    # of equal teeth the first, not the one that rounding makes thinner
+    thinnest = int(np.argmax(tips <= tips.min() + _ALIKE * module))
+    teeth = len(result.gears[0].profile.tip_thickness)
+    wheel, tooth = (1, thinnest + 1) if thinnest < teeth else (2, thinnest - teeth + 1)
     # where both directions are equal by symmetry: the first, not the one that rounding makes larger
     direction, (phi1, angle) = max(
         subject.pressure_angles.items(), key=lambda item: round(item[1][1], 9)
@@ -153,10 +159,10 @@ def _mesh(result: GearPairResult) -> Tree:
             shown=True,
         ),
         "tip_thickness_min_mm": Fact(
-            float(gear.profile.tip_thickness.min()),
+            float(tips.min()),
             "thinnest tip",
             at_least=thin,
-            place=f"wheel {gear.wheel}, tooth {tooth}",
+            place=f"wheel {wheel}, tooth {tooth}",
             shown=True,
         ),
         "rim_min_mm": _rim(subject, limit_of(KIND, "thin-rim", limits) * module),

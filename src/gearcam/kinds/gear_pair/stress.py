@@ -22,7 +22,7 @@ from gearcam.laws.ratio.span import angle_text
 from gearcam.mechanics.hertz import line_pressure, yield_pressure
 from gearcam.meshing.settings import STRESS
 from gearcam.numeric import narrowing
-from gearcam.numeric.arrays import indices_among
+from gearcam.numeric.arrays import distinct, indices_among
 from gearcam.pictures.charts import Chart, Line, knot_marks
 from gearcam.results.study import StudyResult
 
@@ -95,7 +95,7 @@ def study_stress(result: GearPairResult, progress: Progress) -> StudyResult:
     with result.stage("shares"):
         even = _phases(pair)
         entries = pair.entries(even)
-        entries = pair.entries(np.union1d(even, extremes(pair, even, entries)))
+        entries = pair.entries(distinct(even, extremes(pair, even, entries)))
     certified: list[CertifiedRoot] = []
     interrupted = ""
     with result.stage("certificates"):
@@ -305,7 +305,7 @@ def _facts(pair: ElasticPair, entries: Entries, stressed: StressedPair, *, compl
         if pair.spec.alone
         else None,
         "plane": pair.spec.plane,
-        "phases": len(np.unique(entries.phi1)),
+        "phases": len(distinct(entries.phi1)),
         "held_diameter_mm": held or None,
         "gears": [_of_wheel(pair, entries, stressed, wheel) for wheel in WHEELS],
         f"lag_{unit}": {

@@ -24,6 +24,7 @@ from gearcam.linkages.balance import (
 )
 from gearcam.linkages.efforts import InertiaForce
 from gearcam.numeric import narrowing
+from gearcam.numeric.arrays import distinct
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Line
 from gearcam.results.study import StudyResult
@@ -119,7 +120,7 @@ def study_balance(result: MechanismResult, progress: Progress) -> StudyResult:
             raise DesignError([Problem(what, file=result.design.source, key="mass", allowed=near)])
         rotors = rotors_of(result, work, x)
         every = [work] if weighted is None else [work, weighted.work]
-        q = np.unique(np.concatenate([x, *(_tops(one, x) for one in every)]))
+        q = distinct(x, *(_tops(one, x) for one in every))
         found = _shaking(work, q)
         left = None if weighted is None else _shaking(weighted.work, q)
     told = {one.spec.name: rotor_facts(one, float(work.speed or 0.0)) for one in rotors}

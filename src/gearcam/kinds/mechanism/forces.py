@@ -25,7 +25,7 @@ from gearcam.linkages.friction import GuideFriction
 from gearcam.linkages.known import GROUND
 from gearcam.linkages.reactions import Reactions, Structure, UnheldError, reactions
 from gearcam.numeric import narrowing
-from gearcam.numeric.arrays import runs_of
+from gearcam.numeric.arrays import distinct, runs_of
 from gearcam.numeric.gauss import gauss_cells
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Line
@@ -305,9 +305,9 @@ def _places(joints: JointForces) -> Array:
     which, places, values = narrowing.summits(
         lambda q: sought(joints.at(q)), sought(known), *narrowing.neighbours(x), width
     )
-    best = [np.flatnonzero(which == number) for number in np.unique(which)]
+    best = [np.flatnonzero(which == number) for number in distinct(which)]
     tops = places[[rows[np.argmax(values[rows])] for rows in best]]
-    return np.union1d(np.union1d(x, tops), _switches(joints, x, known.locked, width))
+    return distinct(x, tops, _switches(joints, x, known.locked, width))
 
 
 def _switches(joints: JointForces, x: Array, locked: Mask, width: float) -> Array:

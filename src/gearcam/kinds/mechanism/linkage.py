@@ -18,7 +18,7 @@ from gearcam.linkages.closing import NotClosingError, settled
 from gearcam.linkages.elements import MOTION
 from gearcam.linkages.linkage import Linkage, in_order
 from gearcam.linkages.narrow import with_cells
-from gearcam.numeric.arrays import Array, apart
+from gearcam.numeric.arrays import Array, apart, distinct
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.names import Tables
@@ -62,7 +62,7 @@ def make_linkage(tables: Tables, drives: Sequence[PlacedDrive]) -> Linkage:
     (low, high), closed = _cycle_of(drives, _period(tables))
     _demand_on_plates(drives, (low, high))
     inner = [one.knots_in(low, high) for one in drives]
-    knots = apart(np.unique(np.concatenate([[low, high], *inner])), _SAME)
+    knots = apart(distinct(*inner, [low, high]), _SAME)
     knots[-1] = high  # rather than one that differs by rounding
     knots = with_cells([one.cells_in(low, high) for one in drives], knots)
     setting = Setting(standing_places(tables), drives)

@@ -21,7 +21,7 @@ from gearcam.base.tolerances import DEFAULT
 from gearcam.kinds.mechanism.keys import center_of, way_of
 from gearcam.kinds.mechanism.moved import Moved, linear, moved_by
 from gearcam.linkages.elements import GivenMotion, GuideLine, Law, MemberPoint
-from gearcam.numeric.arrays import Array, Plane
+from gearcam.numeric.arrays import Array, Plane, distinct
 from gearcam.numeric.jets import Jet, composed
 from gearcam.numeric.piecewise import extremes
 from gearcam.numeric.roots import bracketed_root
@@ -233,7 +233,7 @@ class PlacedDrive(ShortRepr):
         cells = np.array([low, high])
         if self.spec.slide is not None:
             cells = _formula_cells(self.spec.slide, low, high)
-        return np.union1d(cells, self._within(self.cells, low, high))
+        return distinct(cells, self._within(self.cells, low, high))
 
     @cached_property
     def places(self) -> Array:
@@ -243,7 +243,7 @@ class PlacedDrive(ShortRepr):
     def places_in(self, low: float, high: float) -> Array:
         """Return the same in a range (see `cells_in`)."""
         ends = self.cells_in(low, high)
-        return np.union1d(ends, 0.5 * (ends[1:] + ends[:-1]))
+        return distinct(ends, 0.5 * (ends[1:] + ends[:-1]))
 
     def turns_in(self, low: float, high: float) -> tuple[Array, Array]:
         """Return where a slide or a plate turns back, and the ends (see `cells_in`).
@@ -268,7 +268,7 @@ class PlacedDrive(ShortRepr):
             turns = range(math.floor(ends[0] / self.period), math.ceil(ends[1] / self.period) + 1)
             every = [places + k * self.period for k in turns] if self.closed else [places]
             found = (np.concatenate(every) - self.spec.phase) / self.spec.rate
-        return np.unique(found[(found > low) & (found < high)])
+        return distinct(found[(found > low) & (found < high)])
 
     def _passed(self, places: Array, low: float, high: float) -> Array:
         """Return where a plate passes places of its own, or turns back at them."""
@@ -317,7 +317,7 @@ def placed(spec: MachineDrive, build: Callable[[Any], Any]) -> PlacedDrive:
         return PlacedDrive(spec, moved_by(spec, None), ends, cells, high - low, spec.span is None)
     result = build(nested)
     by = result.pair.law if spec.pair is not None else result.program
-    cells = np.union1d(by.knots, by.driven.knots if spec.pair is not None else by.cuts)
+    cells = distinct(by.knots, by.driven.knots if spec.pair is not None else by.cuts)
     knots, cells = (one[(one >= 0.0) & (one <= by.period)] for one in (by.knots, cells))
     moved, end = moved_by(spec, result), float(by.period)
     closed = by.closed
@@ -327,7 +327,7 @@ def placed(spec: MachineDrive, build: Callable[[Any], Any]) -> PlacedDrive:
         end, closed = float(result.centrode_angles(2)[-1]), False
         turns = by.period * np.arange(math.ceil(end / by.period))
         every = (np.add.outer(turns, one).ravel() for one in (knots, cells))
-        knots, cells = (np.union1d(one[one < end], [0.0, end]) for one in every)
+        knots, cells = (distinct(one[one < end], [0.0, end]) for one in every)
     return PlacedDrive(spec, moved, knots, cells, end, closed, result)
 
 

@@ -288,7 +288,7 @@ class Translating(Form[TranslatingCam, PlateSpec, PlateFollower]):
     def parts(self, cam: TranslatingCam) -> tuple[Part, ...]:
         """Return the plate, with its wall or its groove, and its bolts."""
         from gearcam.parts.body import Opening, Part, Recess
-        from gearcam.parts.openings import demand_apart
+        from gearcam.parts.openings import Stock, demand_apart
 
         cam, thickness, depth = self._cut(cam), self.given.thickness, self.given.groove_depth
         holes, recesses = list(self._bolts(cam)), []
@@ -311,7 +311,8 @@ class Translating(Form[TranslatingCam, PlateSpec, PlateFollower]):
             "bolt_height_mm": self.blank.bolt_height,
         }
         places = {key: size for key, size in sizes.items() if size is not None}
-        demand_apart(taken, cam.edge.polygon, workpiece(STEM, thickness), places)
+        stock = Stock(contours=(cam.edge,), work=workpiece(STEM, thickness))
+        demand_apart(taken, stock, places)
         return (
             Part(
                 name=STEM,
