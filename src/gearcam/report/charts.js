@@ -205,7 +205,7 @@ class ChartView {
     this.plot = new uPlot({
       mode: 2, // each line has its own places, in any order
       width: this.home.clientWidth || PRINTED.width,
-      height: HEIGHT,
+      height: this.home.clientHeight || HEIGHT,
       legend: { show: false },
       cursor: { x: false, y: false, drag: { x: false, y: false }, points: { show: false } },
       scales: { x: { time: false, ...scale("x", 0) }, y: scale("y", 1) },
@@ -391,8 +391,9 @@ class ChartView {
     this.cursor.style.transform = `translateX(${this.plot.valToPos(this.page.place, "x")}px)`;
   }
 
-  resize(size = { width: this.home.clientWidth, height: HEIGHT }) {
-    if (!this.plot || !size.width || size.width === this.plot.width) return;
+  resize(size = { width: this.home.clientWidth, height: this.home.clientHeight || HEIGHT }) {
+    const { width, height } = this.plot ?? {};
+    if (!this.plot || !size.width || (size.width === width && size.height === height)) return;
     this.plot.setSize(size);
     this.level();
   }

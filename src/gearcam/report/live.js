@@ -106,10 +106,16 @@
     send();
   }
 
+  // Show a document, or a draft, which is said to be one.
+  function show(next) {
+    document.body.classList.toggle("draft", !next.charts);
+    window.gearcam.show(next);
+  }
+
   function take(reply, last) {
     tell(reply.error, Boolean(reply.error));
     if (reply.document) {
-      window.gearcam.show(reply.document);
+      show(reply.document);
       for (const [key, value] of Object.entries(reply.changes)) {
         if (key !== last) set(key, value);
       }
@@ -232,7 +238,7 @@
     const state = await (await fetch("document")).json();
     if (state.number <= number) return;
     number = state.number;
-    if (state.document) window.gearcam.show(state.document);
+    if (state.document) show(state.document);
     tell(state.error, Boolean(state.error));
     if (state.made !== made) {
       made = state.made;
