@@ -13,17 +13,18 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from selenium.webdriver import Chrome
+from selenium.webdriver import ActionChains, Chrome
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
 from gearcam import kinds
-from helpers_browser import complaints
+from helpers_browser import complaints, settle
 from helpers_pairs import PROFILES
 from helpers_view import served
 
 NAIL = PROFILES / "nail_machine_two_phase.toml"
 SECONDS = 60.0
+WIDE = (1500, 950)
 SPY = """
     window.documents = [];
     const show = window.gearcam.show;
@@ -145,6 +146,69 @@ def test_a_slider_is_followed_coarsely_and_then_exactly(page: Chrome, file: Path
     until(lambda: "face_width_mm = 60" in file.read_text())
 
 
+@pytest.fixture
+def wide(page: Chrome) -> Iterator[Chrome]:
+    """The page in a window of a large screen."""
+    metrics = {"width": WIDE[0], "height": WIDE[1], "deviceScaleFactor": 1, "mobile": False}
+    page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
+    settle(page)
+    yield page
+    page.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+def test_numbers_picture_and_leading_charts_are_in_one_view(wide: Chrome) -> None:
+    figures = wide.find_elements(By.CSS_SELECTOR, "#charts > figure")
+    assert len(figures) == 3
+    seen = [*figures, wide.find_element(By.ID, "parts"), wide.find_element(By.ID, "controls")]
+    seen += wide.find_elements(By.CSS_SELECTOR, "#numbers .key")[:3]
+    boxes = [one.rect for one in seen]
+    for box in boxes:
+        assert min(box["x"], box["y"]) >= 0
+        assert box["x"] + box["width"] <= WIDE[0]
+        assert box["y"] + box["height"] <= WIDE[1]
+    across = "const e = document.scrollingElement; return [e.scrollWidth, e.clientWidth]"
+    assert wide.execute_script(across) == [WIDE[0], WIDE[0]]
+
+
+def test_curves_follow_the_hand_and_a_draft_is_replaced(wide: Chrome) -> None:
+    """With real input: curves change while the slider is held, and again when it is let go."""
+    names = "return [...document.querySelectorAll('#charts > figure .plot')]"
+    names += ".map((one) => one.getAttribute('aria-label'))"
+    before = wide.execute_script(names)
+    heading = "return getComputedStyle(document.getElementById('moving'), '::after').content"
+    one = slider(wide, "law.ratios[1]")
+    held = ActionChains(wide).move_to_element(one).click_and_hold().move_by_offset(40, 0)
+    held.perform()
+    until(lambda: all(a != b for a, b in zip(wide.execute_script(names), before, strict=True)))
+    assert wide.execute_script(heading) == '" (draft)"'
+    assert all(one["draft"] for one in shown(wide))
+    ActionChains(wide).release().perform()
+    until(lambda: not shown(wide)[-1]["draft"])
+    assert wide.execute_script(heading) == "none"
+
+
+def test_what_is_saved_is_told_and_what_is_not_is_asked_for(page: Chrome, file: Path) -> None:
+    before = file.read_text()
+    save, told = page.find_element(By.ID, "save"), page.find_element(By.ID, "saved")
+    style = "const s = getComputedStyle(arguments[0]); return [s.borderStyle, s.color]"
+    idle = page.execute_script(style, save)
+    width = field(page, "pair.face_width_mm")
+    width.clear()
+    width.send_keys("60", Keys.ENTER)
+    until(lambda: told.text == "Not saved.")
+    assert page.execute_script(style, save) != idle
+    leaving = "const e = new Event('beforeunload', {cancelable: true}); return dispatchEvent(e)"
+    assert page.execute_script(leaving) is False
+    page.find_element(By.ID, "save").click()
+    until(lambda: told.text == "Saved.")
+    until(lambda: shown(page) and not shown(page)[-1]["draft"])
+    until(lambda: file.read_text() != before)
+    time.sleep(1.0)  # the file is followed meanwhile
+    assert told.text == "Saved."
+    assert page.execute_script(style, save) == idle
+    assert page.execute_script(leaving) is True
+
+
 def test_a_field_and_the_keyboard_do_the_same(page: Chrome) -> None:
     one = field(page, "pair.face_width_mm")
     one.clear()
@@ -158,10 +222,13 @@ def test_a_field_and_the_keyboard_do_the_same(page: Chrome) -> None:
 
 
 def places(page: Chrome) -> list[float]:
-    """Where sliders stand, pixels from the top of the page."""
+    """Where sliders stand, pixels from the top of the page, or of a column that stays in sight."""
     return page.execute_script(
+        "const home = document.getElementById('numbers');"
+        "const stays = getComputedStyle(home).position === 'sticky';"
+        "const off = stays ? home.scrollTop - home.getBoundingClientRect().top : scrollY;"
         "return [...document.querySelectorAll('#numbers input')]"
-        ".map((one) => one.getBoundingClientRect().top + scrollY)"
+        ".map((one) => Math.round(one.getBoundingClientRect().top + off))"
     )
 
 
@@ -186,10 +253,10 @@ def test_a_refused_design_has_a_red_verdict_and_the_sliders_stay(
     metrics = {"width": size[0], "height": size[1], "deviceScaleFactor": 1, "mobile": False}
     page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
     try:
-        good, before = verdict(page), places(page)
-        assert good[1] != RED
         bore = field(page, "blank.bore_diameter_mm[0]")
         page.execute_script("arguments[0].scrollIntoView({block: 'center'})", bore)
+        good, before = verdict(page), places(page)
+        assert good[1] != RED
         bore.clear()
         bore.send_keys("400", Keys.ENTER)
         assert "the bore reaches the root of the teeth" in until(lambda: error(page))

@@ -81,6 +81,7 @@
   }
 
   function ask(last, exact) {
+    told = "";
     wanted = { changes: { ...pending }, last, exact };
     send();
   }
@@ -137,7 +138,6 @@
   function enable() {
     const none = Object.keys(pending).length === 0;
     for (const id of ["save", "undo"]) document.getElementById(id).disabled = none;
-    if (!none) told = "";
     document.getElementById("saved").textContent = none ? told : "Not saved.";
   }
 
@@ -207,20 +207,10 @@
   }
 
   async function store() {
-    const changes = { ...pending };
     try {
-      const reply = await post("save", { changes, made });
+      const reply = await post("save", { changes: pending, made });
       if (reply.error) tell(reply.error);
-      else {
-        told = "Saved.";
-        for (const [key, value] of Object.entries(changes)) {
-          const row = rows.get(key);
-          if (row) row.key.value = value;
-          if (pending[key] === value) delete pending[key];
-          row?.place.classList.toggle("changed", key in pending);
-        }
-        enable();
-      }
+      else document.getElementById("saved").textContent = told = "Saved.";
     } catch {
       ended();
     }
