@@ -105,7 +105,7 @@ def live_view(folder: str) -> bytes:
         try:
             line = view.stdout.readline() if view.stdout else ""
             (url,) = re.findall(r"http://\S+", line)
-            return taken(url, 60.0)
+            return taken(url, 60.0, (1500, 950))
         finally:
             view.terminate()
 
