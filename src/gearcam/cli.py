@@ -105,8 +105,8 @@ def _command(word: str) -> Command | None:
         if one.name == word:
             return one
     for kind in kind_names():
-        if word in kind_studies(kind).own:
-            return _study_command(kind_studies(kind)[word])
+        if word in (own := kind_studies(kind).own):
+            return _study_command(own[word])
     if not word or word.startswith("-"):
         return None
     return next((one for one in _commands() if one.name == word), None)

@@ -63,12 +63,13 @@ def _chart(name: str, made: Sequence[Variant], driver: str) -> dict[str, Any]:
     ``kind`` is the number of the line in its own chart, which chooses the dashes, and ``what`` its
     label there.
     """
-    data = chart_data(name, joined(name, made), driver)
+    alike = _alike(name, made)
     own = [
         {"variant": k, "called": made[k].label, "kind": kind, "what": line.label}
-        for k, chart in _alike(name, made)
+        for k, chart in alike
         for kind, line in enumerate(chart.lines)
     ]
+    data = chart_data(name, _one_of([(made[k].label, chart) for k, chart in alike]), driver)
     lines = [{**line, **whose} for line, whose in zip(data["lines"], own, strict=True)]
     return {**data, "lines": lines}
 
@@ -96,7 +97,11 @@ def joined(name: str, variants: Sequence[Variant]) -> Chart:
     -------
     Chart
     """
-    charts = [(variants[k].label, chart) for k, chart in _alike(name, variants)]
+    return _one_of([(variants[k].label, chart) for k, chart in _alike(name, variants)])
+
+
+def _one_of(charts: Sequence[tuple[str, Chart]]) -> Chart:
+    """Return one chart with the lines of all, by the labels of their variants."""
     first = charts[0][1]
     lines, limits = [], []
     for label, chart in charts:

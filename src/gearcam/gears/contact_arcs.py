@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from gearcam.base.display import ShortRepr
 from gearcam.gears.track import Track
-from gearcam.numeric.arrays import Array, Ints
+from gearcam.numeric.arrays import Array, Ints, first_least
 
 _SAME = 1e-12
 """Ends of arcs closer than this, in travels, are the same: rounding."""
@@ -53,7 +53,7 @@ class ContactArcs(ShortRepr):
     @property
     def weakest(self) -> int:
         """Index of the smallest contact ratio; the first of those equal but for rounding."""
-        return int(np.argmax(self.ratios <= self.ratios.min() + _ALIKE))
+        return first_least(self.ratios, _ALIKE)
 
     @cached_property
     def stretches(self) -> tuple[Array, Array, Ints]:

@@ -114,7 +114,7 @@ def _off_by_table(toothing: Toothing) -> float:
 
 
 def _off_at_tips(gear: Gear) -> float:
-    """Return how far the table of a centrode moves the reach of flanks, mm; 0 without one."""
+    """Return how far the reach of flanks is from that on the exact centrode, mm."""
     flanks, track = gear.profile.flanks, gear.toothing.track.exact
     tips, exact = flanks.tips, replace(gear.toothing, track=track)
     wanted = _reaches(exact, flanks, exact.frames(tips.phi), exact.frames(tips.foot))

@@ -75,6 +75,18 @@ def distinct(first: NDArray[ScalarT], *others: ArrayLike) -> NDArray[ScalarT]:
     return made
 
 
+def first_least(values: Array, alike: float) -> int:
+    """Return the index of the least value; the first of those that differ from it by rounding.
+
+    Parameters
+    ----------
+    values : (n,) array
+    alike : float
+        Difference up to which values are equal: rounding separates what symmetry makes equal.
+    """
+    return int(np.argmax(values <= values.min() + alike))
+
+
 def apart(rising: Array, least: float) -> Array:
     """Return rising values (n,) without those that follow another by no more than `least`."""
     return rising[np.diff(rising, prepend=-np.inf) > least]

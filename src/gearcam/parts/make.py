@@ -127,8 +127,10 @@ def _demand_within(hub: Hub, contours: Sequence[Contour | Circle], work: Workpie
 
 def _demand_marks(part: Part, blank: WheelBlank, work: Workpiece) -> None:
     """Refuse a mark that meets an opening, the hub or the outline."""
+    if not part.marks:
+        return
+    outline, *holes = (edge.polyline(part.tolerance) for edge in part.steps[0].edges)
     for mark in part.marks:
-        outline, *holes = (edge.polyline(part.tolerance) for edge in part.steps[0].edges)
         radius, room = 0.5 * mark.diameter, room_around(mark.center, [outline], holes)
         if part.hub is not None:
             room = min(room, abs(mark.center) - 0.5 * part.hub.diameter)

@@ -128,7 +128,7 @@ class ChartView {
     }
   }
 
-  // A row of the legend for each line; returns where its value at the place of the parts is told.
+  // Add a row to the legend for each line, and return the elements that show its value.
   rows() {
     return this.chart.lines.map((line, k) => {
       const row = add(this.legend, "li");
@@ -296,7 +296,9 @@ class ChartView {
     if (marked && !dots) {
       pen.beginPath();
       for (const [x, y] of alongOf(way, APART * ratio, variant)) {
-        diamond(x, y, MARK * ratio).forEach(([px, py], n) => (n ? pen.lineTo : pen.moveTo).call(pen, px, py));
+        const [first, ...others] = diamond(x, y, MARK * ratio);
+        pen.moveTo(...first);
+        for (const corner of others) pen.lineTo(...corner);
         pen.closePath();
       }
       pen.fill();

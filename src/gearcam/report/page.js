@@ -30,6 +30,7 @@ const page = {
   forth: 1, // -1 on the way back of an open pair
   get scene() { return this.shown.scene; },
   get title() { return this.shown.title; },
+  get chosen() { return this.seen.chosen; },
   go,
   point,
 };
@@ -308,10 +309,16 @@ function listen() {
   });
   still.addEventListener("change", name);
   dark.addEventListener("change", repaint);
-  for (const [name, on] of [["pointerover", true], ["pointerout", false], ["focusin", true], ["focusout", false]]) {
-    document.addEventListener(name, ({ target }) => {
-      const row = target.closest?.("[data-variant]");
-      if (row) point(on ? Number(row.dataset.variant) : undefined);
+  const variantAt = ({ target }) => target.closest?.("[data-variant]")?.dataset.variant;
+  for (const name of ["pointerover", "focusin"]) {
+    document.addEventListener(name, (event) => {
+      const variant = variantAt(event);
+      if (variant !== undefined) point(Number(variant));
+    });
+  }
+  for (const name of ["pointerout", "focusout"]) {
+    document.addEventListener(name, (event) => {
+      if (variantAt(event) !== undefined) point(undefined);
     });
   }
   window.addEventListener("hashchange", unfold);
@@ -322,7 +329,7 @@ function listen() {
 // Have one variant stand out from the others, or none.
 function point(variant) {
   if (page.chosen === variant) return;
-  page.chosen = page.seen.chosen = variant;
+  page.seen.chosen = variant;
   for (const row of document.querySelectorAll("[data-variant]")) {
     row.classList.toggle("chosen", Number(row.dataset.variant) === variant);
   }

@@ -18,6 +18,7 @@ from gearcam.gears.subject import KIND, CheckedPair
 from gearcam.kinds.gear_pair.tables import POINTS
 from gearcam.laws.ratio.span import angle_text
 from gearcam.meshing.drive_checks import side_name
+from gearcam.numeric.arrays import first_least
 from gearcam.parts.mass import part_facts, size_fact
 from gearcam.report.file import report_files
 from gearcam.results.parts import Files, Measured, part_files
@@ -139,8 +140,7 @@ def _mesh(result: GearPairResult) -> Tree:
     least = limit_of(KIND, "contact-ratio", limits)
     thin = limit_of(KIND, "thin-tip", limits) * module
     tips = np.concatenate([gear.profile.tip_thickness for gear in result.gears])
-    # of equal teeth the first, not the one that rounding makes thinner
-    thinnest = int(np.argmax(tips <= tips.min() + _ALIKE * module))
+    thinnest = first_least(tips, _ALIKE * module)
     teeth = len(result.gears[0].profile.tip_thickness)
     wheel, tooth = (1, thinnest + 1) if thinnest < teeth else (2, thinnest - teeth + 1)
     # where both directions are equal by symmetry: the first, not the one that rounding makes larger
