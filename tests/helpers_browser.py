@@ -82,3 +82,13 @@ def requests(browser: Chrome) -> list[str]:
         for one in messages
         if one["method"] == "Network.requestWillBeSent"
     ]
+
+
+def saved(browser: Chrome, folder: Path, button: str, name: str) -> Path:
+    """Click on what a selector finds, and return the file that it saves."""
+    behaviour = {"behavior": "allow", "downloadPath": str(folder)}
+    browser.execute_cdp_cmd("Browser.setDownloadBehavior", behaviour)
+    browser.execute_script("document.querySelector(arguments[0]).click()", button)
+    path = folder / name
+    until(lambda: path.exists() and path.stat().st_size)
+    return path

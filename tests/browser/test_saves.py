@@ -15,7 +15,7 @@ import pytest
 from selenium.webdriver import Chrome
 from selenium.webdriver.common.by import By
 
-from helpers_browser import go, open_page, unfold, until
+from helpers_browser import go, open_page, saved, unfold
 
 NAIL = "nail_machine_two_phase"
 SVG = "{http://www.w3.org/2000/svg}"
@@ -24,16 +24,6 @@ ROUNDED = 2e-4
 
 BuildOutput = Callable[[str], Path]
 Built = Callable[[str], Any]
-
-
-def saved(browser: Chrome, folder: Path, button: str, name: str) -> Path:
-    """Click on what a selector finds, and return the file that it saves."""
-    behaviour = {"behavior": "allow", "downloadPath": str(folder)}
-    browser.execute_cdp_cmd("Browser.setDownloadBehavior", behaviour)
-    browser.execute_script("document.querySelector(arguments[0]).click()", button)
-    path = folder / name
-    until(lambda: path.exists() and path.stat().st_size)
-    return path
 
 
 def points_of(path: ET.Element) -> Any:

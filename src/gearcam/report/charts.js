@@ -11,16 +11,26 @@ const HEIGHT = 230; // of a chart, pixels
 const PRINTED = { width: 330, height: 200 };
 const PRINTED_FIRST = { ...PRINTED, width: 676 }; // over both columns
 const MOST_TICKS = 8; // of a logarithmic axis
+const ANGLES = [1, 2, 5, 10, 15, 30, 45, 90, 180, 360, 720]; // steps of an axis in degrees
+const FEW = 4; // lines whose largest and least values are told in the legend
+const FLAT = 1e-9; // a line that changes less, relative to its size, has no largest value
 const SHORT = 2.5; // decades on an axis with ticks between powers of ten
 const LETTERS = 12; // height of a line of text in a chart, pixels
-const AT_ONCE = 3; // charts drawn per frame, so that the parts keep moving
-const LEADING = 3; // charts in sight, with those of studies; the others are folded
 
 const brief = (value) => String(Number(value.toPrecision(5)));
 
 // Numbers at an axis without rounding errors, however small the steps are.
 const ticks = (_, values, axis, space, step) =>
   values.map((value) => String(Number((Math.round(value / step) * step).toPrecision(12))));
+
+const inDegrees = (label) => label.endsWith(", deg");
+
+// Steps between the ticks of an axis in degrees: parts of a turn, and decimals below a degree.
+const angleSteps = [1e-6, 1e-5, 1e-4, 1e-3, 0.01, 0.1].flatMap((one) => [one, 2 * one, 5 * one])
+  .concat(ANGLES, [10, 20, 50, 100].map((turns) => 360 * turns));
+
+// The corners of a triangle that points to a place from above (1) or below (-1), pixels.
+const peakOf = (side) => [[0, -side], [4, -7 * side], [-4, -7 * side]];
 
 // Ticks of a logarithmic axis: powers of ten, and their double and fivefold on a short axis.
 function powers(_, axis, low, high) {
@@ -92,17 +102,18 @@ class ChartView {
     this.figure = add(home, "figure", { class: "chart" });
     const caption = add(this.figure, "figcaption");
     this.title = add(caption, "h3");
-    this.unit = add(caption, "p", { class: "unit" });
-    this.home = add(this.figure, "div", { class: "plot", role: "img" });
+    const below = add(caption, "p", { class: "unit" });
+    this.unit = add(below, "span");
+    this.at = add(below, "output", { class: "at", "aria-live": "off" });
+    this.home = add(this.figure, "div", { class: "plot", role: "img", tabindex: "0" });
     this.legend = add(this.figure, "ul", { class: "legend" });
-    this.button = add(this.figure, "button", { type: "button", class: "save" }, "Save CSV");
-    this.button.addEventListener("click", () => {
-      save(`${page.title}_${this.chart.name}.csv`, csvOf(this.chart), "text/csv");
-    });
-    this.cursor = document.createElement("div");
-    this.cursor.className = "cursor";
+    this.tools = add(this.figure, "div", { class: "tools" });
+    this.cursor = add(document.createElement("div"), "div", { class: "cursor" });
     this.near = false;
     this.chart = chart;
+    this.stretch = null; // the part of the horizontal axis that is shown
+    this.hand = new ChartHand(this);
+    this.saves = savesOf(this);
     this.describe();
     new ResizeObserver(() => this.resize()).observe(this.home);
   }
@@ -115,7 +126,10 @@ class ChartView {
     const levels = limits.map((limit) => `; ${limit.label} ${brief(limit.value)}`).join("");
     const ends = range.map(brief).join(" to ");
     this.home.setAttribute("aria-label", `${title}. ${y} over ${x}: ${names}, ${ends}${levels}`);
-    this.button.setAttribute("aria-label", `Save CSV: ${title}`);
+    for (const [form, button] of this.saves) {
+      button.setAttribute("aria-label", `Save ${form}: ${title}`);
+    }
+    this.hand.describe(title);
     this.legend.replaceChildren();
     this.values = lines[0]?.called === undefined ? this.rows() : this.rowsOfVariants();
     for (const limit of limits) {
@@ -133,7 +147,10 @@ class ChartView {
     return this.chart.lines.map((line, k) => {
       const row = add(this.legend, "li");
       row.append(sampleOf(lookOf(line, k), line.dots), ` ${line.label} `);
-      return add(row, "output", { "aria-live": "off" });
+      const value = add(row, "output", { "aria-live": "off" });
+      const extremes = this.chart.lines.length <= FEW && this.extremes(line);
+      if (extremes) add(row, "small", { class: "extremes" }, this.toldOf(extremes));
+      return value;
     });
   }
 
@@ -157,6 +174,26 @@ class ChartView {
     return values;
   }
 
+  toldOf({ largest, least }) {
+    const [top, bottom] = [largest, least].map(({ x, y }) => `${brief(y)} at ${brief(x)}`);
+    return ` largest ${top}, least ${bottom}`;
+  }
+
+  // The largest and the least value of a line in sight, with their places; none of a flat one.
+  extremes({ dots, x, y }) {
+    const [low, high] = this.stretch ?? [-Infinity, Infinity];
+    let [largest, least] = [-1, -1];
+    for (let k = 0; k < x.length; k++) {
+      if (dots || this.chart.equal || y[k] === null || x[k] === null || x[k] < low || x[k] > high) continue;
+      if (largest < 0 || y[k] > y[largest]) largest = k;
+      if (least < 0 || y[k] < y[least]) least = k;
+    }
+    const size = Math.max(Math.abs(y[largest]), Math.abs(y[least]));
+    if (largest < 0 || !(y[largest] - y[least] > FLAT * size)) return null;
+    const spot = (k) => ({ x: x[k], y: y[k] });
+    return { largest: spot(largest), least: spot(least) };
+  }
+
   // Replace this chart by another one when it is in sight.
   expect(chart) {
     if (chart !== (this.waiting ?? this.chart)) this.waiting = chart;
@@ -167,16 +204,30 @@ class ChartView {
     const shape = (one) => [one.log, one.equal, ...one.lines.map((line) => line.dots)].join();
     const same = shape(chart) === shape(this.chart) && chart.x === this.chart.x;
     this.chart = chart;
+    if (!same) this.stretch = null;
     this.describe();
     if (!this.plot) return;
     if (same) {
-      this.plot.setData(this.data());
-      this.level();
+      this.rescale();
     } else {
       this.plot.destroy();
       this.plot = null;
       this.draw();
     }
+  }
+
+  // Show another stretch of the horizontal axis, or the whole of it.
+  zoom(stretch) {
+    this.stretch = stretch;
+    this.describe();
+    this.rescale();
+    this.mark(this.page.place);
+  }
+
+  // Draw anew what may have other ends.
+  rescale() {
+    this.plot.setData(this.data());
+    this.level();
   }
 
   data() {
@@ -199,7 +250,7 @@ class ChartView {
     const ticked = (name) =>
       this.chart.log.includes(name)
         ? { splits: powers, values: powerTexts, filter: (_, values) => values }
-        : { values: ticks };
+        : { values: ticks, ...(inDegrees(this.chart[name]) && { incrs: angleSteps }) };
     // wide enough for most numbers, so that charts line up
     const wide = (_, texts) => 14 + 7 * Math.max(6, ...(texts ?? []).map((text) => text.length));
     this.plot = new uPlot({
@@ -214,20 +265,22 @@ class ChartView {
         { ...axis, ...ticked("y"), size: wide },
       ],
       series: [null, ...this.chart.lines.map((line, k) => this.series(line, k))],
-      hooks: { draw: [() => this.marks(), () => this.limits(), () => this.follow()] },
+      hooks: {
+        draw: [
+          () => this.marks(), () => this.limits(), () => this.peaks(), () => this.follow(),
+        ],
+      },
     }, this.data(), this.home);
     this.level();
     this.plot.over.append(this.cursor);
     if (this.chart.moves) this.plot.over.classList.add("moves");
-    this.plot.over.addEventListener("click", (event) => this.clicked(event));
-    if (this.chart.lines[0]?.called === undefined) return;
-    this.plot.over.addEventListener("pointermove", (event) => this.page.point(this.nearest(event)));
-    this.plot.over.addEventListener("pointerleave", () => this.page.point(undefined));
+    this.hand.hold(this.plot.over);
   }
 
   // The ends of both axes; of one scale the shorter axis goes on to both sides.
   ends({ bbox }) {
     const { equal, ends } = this.chart;
+    if (this.stretch) return [this.stretch, this.heights()];
     if (!equal || !bbox?.width) return ends;
     const sizes = [bbox.width, bbox.height];
     const unit = Math.max(...ends.map(([low, high], k) => (high - low) / sizes[k]));
@@ -235,6 +288,23 @@ class ChartView {
       const [middle, half] = [0.5 * (low + high), 0.5 * unit * sizes[k]];
       return [middle - half, middle + half];
     });
+  }
+
+  // The ends of the vertical axis for what is within the stretch.
+  heights() {
+    const [low, high] = this.stretch;
+    const seen = [];
+    for (const { x, y } of this.chart.lines) {
+      for (let k = 0; k < x.length; k++) {
+        const after = Math.min(k + 1, x.length - 1);
+        if (y[k] !== null && x[after] >= low && x[Math.max(k - 1, 0)] <= high) seen.push(y[k]);
+      }
+    }
+    const [least, most] = [Math.min(...seen), Math.max(...seen)];
+    if (!seen.length || !(most > least)) return this.chart.ends[1];
+    if (this.chart.log.includes("y")) return [least / 1.1, most * 1.1];
+    const room = 0.06 * (most - least);
+    return [least - room, most + room];
   }
 
   // Give both axes one scale, now that their sizes are known.
@@ -355,10 +425,31 @@ class ChartView {
     pen.restore();
   }
 
-  clicked(event) {
-    if (!this.chart.moves) return;
-    const left = event.clientX - this.plot.over.getBoundingClientRect().left;
-    this.page.go(this.plot.posToVal(left, "x"));
+  // Small triangles at the largest and the least value of each line.
+  peaks() {
+    const { ctx: pen, bbox } = this.plot;
+    const ratio = uPlot.pxRatio;
+    pen.save();
+    pen.beginPath();
+    pen.rect(bbox.left, bbox.top - 6 * ratio, bbox.width, bbox.height + 12 * ratio);
+    pen.clip();
+    pen.setLineDash([]);
+    pen.lineWidth = ratio;
+    pen.strokeStyle = this.page.colours.ground;
+    for (const [k, line] of this.chart.lines.entries()) {
+      const found = this.extremes(line);
+      if (!found || aside(this.page, line.variant)) continue;
+      pen.fillStyle = this.page.colours[lookOf(line, k).ink];
+      for (const [{ x, y }, up] of [[found.largest, 1], [found.least, -1]]) {
+        const [left, top] = [this.plot.valToPos(x, "x", true), this.plot.valToPos(y, "y", true)];
+        pen.beginPath();
+        for (const [dx, dy] of peakOf(up)) pen.lineTo(left + dx * ratio, top + dy * ratio);
+        pen.closePath();
+        pen.fill();
+        pen.stroke();
+      }
+    }
+    pen.restore();
   }
 
   // The variant whose line or dot is nearest to the pointer; none if all are far.
@@ -375,21 +466,27 @@ class ChartView {
     return variant;
   }
 
-  // Show values and cursor at the place of the parts.
+  // Show values and cursor at the place of the parts; the values at that of a pointer before it.
   mark(place) {
     if (!this.plot) return;
-    const [low, high] = this.chart.ends[0];
-    const inside = this.chart.moves && place >= low && place <= high;
+    const [low, high] = this.ends(this.plot)[0];
+    const within = (x) => x >= low && x <= high;
+    const inside = this.chart.moves && within(place);
     this.cursor.hidden = !inside;
     if (inside) this.follow();
+    const { peek } = this.hand;
+    const [, unit = ""] = this.chart.x.split(", ");
+    this.at.textContent = peek === null ? "" : ` at ${brief(peek)} ${unit}`.trimEnd();
+    const read = peek ?? (inside ? place : null);
     for (const [k, line] of this.chart.lines.entries()) {
-      const told = inside && !line.dots ? valuesAt(line, place).slice(0, 3).join(" | ") : "";
+      const told = read !== null && !line.dots ? valuesAt(line, read).slice(0, 3).join(" | ") : "";
       if (this.values[k].textContent !== told) this.values[k].textContent = told;
     }
   }
 
   // Called after each drawing, because the scale may have changed.
   follow() {
+    this.hand.follow();
     this.cursor.style.transform = `translateX(${this.plot.valToPos(this.page.place, "x")}px)`;
   }
 
@@ -426,89 +523,3 @@ const diamond = (x, y, half) => [[x + half, y], [x, y + half], [x - half, y], [x
 // Whether what belongs to a variant stands back behind another one that is pointed at.
 const aside = ({ chosen }, variant) =>
   chosen !== undefined && variant !== undefined && variant !== chosen;
-
-// On paper: light colours, and folded sections open.
-function paper(on) {
-  for (const one of document.querySelectorAll(".printed")) {
-    if (on) one.dataset.open = one.open;
-    one.open = on || one.dataset.open === "true";
-  }
-  document.documentElement.classList.toggle("paper", on);
-}
-
-// All charts of a document. They are drawn once in sight, a few per frame.
-class Charts {
-  constructor(home, page) {
-    this.home = home;
-    this.page = page;
-    this.views = [];
-    this.next = null;
-    this.sight = new IntersectionObserver((entries) => this.seen(entries), { rootMargin: "200px" });
-  }
-
-  show(charts) {
-    const names = (list) => list.map((one) => one.name).join();
-    if (names(charts) !== names(this.views.map((view) => view.chart))) this.rebuild(charts);
-    else this.views.forEach((view, k) => view.expect(charts[k]));
-    this.wake();
-  }
-
-  rebuild(charts) {
-    this.sight.disconnect();
-    this.home.querySelectorAll("figure").forEach((figure) => figure.remove());
-    const more = this.home.querySelector("details"); // on a page of charts none is folded
-    // a design has asked for the charts of studies, whose names are study.chart
-    const folded = (chart, k) => more && k >= LEADING && !chart.name.includes(".");
-    const place = (...one) => (folded(...one) ? more.querySelector("div") : this.home);
-    this.views = charts.map((chart, k) => new ChartView(chart, place(chart, k), this.page));
-    if (more) {
-      const count = charts.filter(folded).length;
-      more.hidden = !count;
-      more.querySelector("summary").textContent = `${count} more charts`;
-      this.home.append(more);
-    }
-    for (const view of this.views) this.sight.observe(view.figure);
-  }
-
-  seen(entries) {
-    for (const { target, isIntersecting } of entries) {
-      const view = this.views.find((one) => one.figure === target);
-      view.near = isIntersecting;
-      if (isIntersecting) view.mark(this.page.place);
-    }
-    this.wake();
-  }
-
-  wake() {
-    this.next ??= requestAnimationFrame(() => {
-      this.next = null;
-      const due = this.views.filter((view) => view.near && (view.waiting || !view.plot));
-      due.slice(0, AT_ONCE).forEach((view) => this.update(view));
-      if (due.length > AT_ONCE) this.wake();
-    });
-  }
-
-  update(view) {
-    if (view.waiting) view.show(view.waiting);
-    view.waiting = null;
-    view.draw();
-    view.mark(this.page.place);
-  }
-
-  mark(place) {
-    for (const view of this.views) if (view.near) view.mark(place);
-  }
-
-  print(on) {
-    for (const [k, view] of this.views.entries()) {
-      if (on) this.update(view);
-      const wide = !k && !this.home.classList.contains("alike");
-      view.resize(on ? (wide ? PRINTED_FIRST : PRINTED) : undefined);
-      view.repaint();
-    }
-  }
-
-  repaint() {
-    for (const view of this.views) view.repaint();
-  }
-}

@@ -33,6 +33,7 @@ const page = {
   get chosen() { return this.seen.chosen; },
   go,
   point,
+  key,
 };
 
 const parts = new Parts(element("parts"), redraw, draw);

@@ -42,7 +42,15 @@ LEADING: Final = 3
 DRAFT_PLACES: Final = 120
 """Steps of the driver in the scene of a draft: 3 degrees of a turn, interpolated linearly."""
 
-_CHARTS: Final = ("uPlot/uPlot.iife.min.js", "parts.js", "saves.js", "charts.js")
+_CHARTS: Final = (
+    "uPlot/uPlot.iife.min.js",
+    "parts.js",
+    "saves.js",
+    "chart_saves.js",
+    "chart_hand.js",
+    "charts.js",
+    "chart_set.js",
+)
 """Parts of the script that draw charts, each after those that it needs."""
 
 SCRIPTS: Final = ("scene.js", *_CHARTS, "blocks.js", "solids.js", "page.js")

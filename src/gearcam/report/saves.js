@@ -1,4 +1,4 @@
-// Saving: the drawing as SVG and PNG, the data of a chart as CSV.
+// Saving: the drawing as SVG, and how a file is handed over.
 
 const PIXELS = 960; // nominal width of a saved drawing, for the widths of its lines
 
@@ -71,23 +71,6 @@ function nameOf({ text, x, y, drop, ink }, pixel, colours) {
 }
 
 const escaped = (text) => text.replace(/[&<>"]/g, (sign) => `&#${sign.charCodeAt(0)};`);
-
-// A column for each line, preceded by its x if this differs from that of the line before.
-function csvOf(chart) {
-  const columns = [];
-  let last = "";
-  for (const line of chart.lines) {
-    const own = JSON.stringify(line.x);
-    if (own !== last) columns.push([chart.x, ...line.x]);
-    columns.push([`${line.label}: ${chart.y}`, ...line.y]);
-    last = own;
-  }
-  const rows = Math.max(...columns.map((column) => column.length));
-  const quoted = (text) => `"${text.replaceAll('"', '""')}"`;
-  const cell = (value) => (typeof value === "string" ? quoted(value) : value ?? "");
-  const row = (_, k) => columns.map((column) => cell(column[k])).join(",");
-  return `${Array.from({ length: rows }, row).join("\r\n")}\r\n`;
-}
 
 function save(name, content, type) {
   const link = document.createElement("a");

@@ -1,0 +1,90 @@
+// All charts of a page: which are in sight, and how they are printed.
+
+const LEADING = 3; // charts in sight, with those of studies; the others are folded
+const AT_ONCE = 3; // charts drawn per frame, so that the parts keep moving
+
+// On paper: light colours, and folded sections open.
+function paper(on) {
+  for (const one of document.querySelectorAll(".printed")) {
+    if (on) one.dataset.open = one.open;
+    one.open = on || one.dataset.open === "true";
+  }
+  document.documentElement.classList.toggle("paper", on);
+}
+
+// All charts of a document. They are drawn once in sight, a few per frame.
+class Charts {
+  constructor(home, page) {
+    this.home = home;
+    this.page = page;
+    this.views = [];
+    this.next = null;
+    this.sight = new IntersectionObserver((entries) => this.seen(entries), { rootMargin: "200px" });
+  }
+
+  show(charts) {
+    const names = (list) => list.map((one) => one.name).join();
+    if (names(charts) !== names(this.views.map((view) => view.chart))) this.rebuild(charts);
+    else this.views.forEach((view, k) => view.expect(charts[k]));
+    this.wake();
+  }
+
+  rebuild(charts) {
+    this.sight.disconnect();
+    this.home.querySelectorAll("figure").forEach((figure) => figure.remove());
+    const more = this.home.querySelector("details"); // on a page of charts none is folded
+    // a design has asked for the charts of studies, whose names are study.chart
+    const folded = (chart, k) => more && k >= LEADING && !chart.name.includes(".");
+    const place = (...one) => (folded(...one) ? more.querySelector("div") : this.home);
+    this.views = charts.map((chart, k) => new ChartView(chart, place(chart, k), this.page));
+    if (more) {
+      const count = charts.filter(folded).length;
+      more.hidden = !count;
+      more.querySelector("summary").textContent = `${count} more charts`;
+      this.home.append(more);
+    }
+    for (const view of this.views) this.sight.observe(view.figure);
+  }
+
+  seen(entries) {
+    for (const { target, isIntersecting } of entries) {
+      const view = this.views.find((one) => one.figure === target);
+      view.near = isIntersecting;
+      if (isIntersecting) view.mark(this.page.place);
+    }
+    this.wake();
+  }
+
+  wake() {
+    this.next ??= requestAnimationFrame(() => {
+      this.next = null;
+      const due = this.views.filter((view) => view.near && (view.waiting || !view.plot));
+      due.slice(0, AT_ONCE).forEach((view) => this.update(view));
+      if (due.length > AT_ONCE) this.wake();
+    });
+  }
+
+  update(view) {
+    if (view.waiting) view.show(view.waiting);
+    view.waiting = null;
+    view.draw();
+    view.mark(this.page.place);
+  }
+
+  mark(place) {
+    for (const view of this.views) if (view.near) view.mark(place);
+  }
+
+  print(on) {
+    for (const [k, view] of this.views.entries()) {
+      if (on) this.update(view);
+      const wide = !k && !this.home.classList.contains("alike");
+      view.resize(on ? (wide ? PRINTED_FIRST : PRINTED) : undefined);
+      view.repaint();
+    }
+  }
+
+  repaint() {
+    for (const view of this.views) view.repaint();
+  }
+}
