@@ -93,6 +93,24 @@ class MarkedPlace:
     value: float
 
 
+@dataclass(frozen=True, kw_only=True)
+class Handle:
+    """A place on a chart that numbers of the design file set: the live view drags it.
+
+    Parameters
+    ----------
+    x, y : float
+        In the units of the axes.
+    keys : mapping of str to (float, float)
+        By key the change of each number, in its unit, as it moves by a unit of the horizontal and
+        of the vertical axis.
+    """
+
+    x: float
+    y: float
+    keys: Mapping[str, tuple[float, float]]
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Chart:
     """A chart: lines over an angle or a number, with limits.
@@ -113,6 +131,8 @@ class Chart:
         Logarithmic axes: ``x``, ``y`` or ``xy``.
     equal : bool
         Whether both axes have one scale, as of a curve in the plane.
+    handles : tuple of Handle
+        Places that numbers of the design file set.
     """
 
     title: str
@@ -123,6 +143,7 @@ class Chart:
     marks: tuple[MarkedPlace, ...] = ()
     log: str = ""
     equal: bool = False
+    handles: tuple[Handle, ...] = ()
 
     def __repr__(self) -> str:
         return f"<Chart of {self.title}: {', '.join(line.label for line in self.lines)}>"

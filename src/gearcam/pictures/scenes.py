@@ -22,7 +22,8 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.numeric.arrays import Array, Ints, Plane, distinct
 from gearcam.numeric.pose import Pose, SpacePose
-from gearcam.pictures.drawings import Feature, chains
+from gearcam.parts.shapes import Circle
+from gearcam.pictures.drawings import FOLLOWER, Feature, Path, chains
 
 PLACES: Final = 720
 """Steps of the driver in a cycle; there is one more place for its end."""
@@ -30,6 +31,9 @@ PLACES: Final = 720
 SAGITTA: Final = 1e-3
 """Chord error of arcs and circles in a scene, mm; outlines keep their own chords."""
 
+
+_SHORT: Final = 4
+"""Most points of a line whose ends, and corners, are handles."""
 
 _DIRECTIONS: Final = 180
 """Directions in which the outermost points of a body are searched: the error of the extent is below
@@ -199,6 +203,32 @@ class Scene(ShortRepr):
             self.times.shape != self.places.shape or not np.all(np.diff(self.times) > 0.0)
         ):
             raise ValueError("times: needs a later one for each place of the driver")
+
+
+def handles_of(body: MovingBody) -> dict[str, complex]:
+    """Return the points of a body by which it can be taken hold of, by name.
+
+    Parameters
+    ----------
+    body : MovingBody
+        The body.
+
+    Returns
+    -------
+    dict of str to complex, mm
+        In its frame: named joints; of a follower the centre of its roller and the ends of its lines
+        by numbers; else the origin without a name.
+    """
+    if body.names:  # the name of a body stands anywhere on it
+        return {text: at for text, at in body.names if text not in (body.called, body.name)}
+    points: list[complex] = []
+    for shape in (one.shape for one in body.features if one.kind == FOLLOWER):
+        if isinstance(shape, Circle):
+            points.append(shape.center)
+        elif isinstance(shape, Path) and len(shape.points) <= _SHORT:
+            points.extend(shape.points.tolist())
+    distinct = dict.fromkeys(points)
+    return {str(k): at for k, at in enumerate(distinct, start=1)} or {"": 0j}
 
 
 def still(features: tuple[Feature, ...], places: Array) -> MovingBody:

@@ -2,6 +2,7 @@
 
 const LEAST = 5; // pixels of a stretch that is chosen; less is a click
 const NEARER = 0.6; // share of the stretch that a key keeps
+const REACH = 10; // of the pointer to a handle, pixels
 const STEPS = 100; // of a key, over a chart without moving parts
 
 class ChartHand {
@@ -10,6 +11,7 @@ class ChartHand {
     this.peek = null; // where curves are read, on the horizontal axis
     this.choosing = false; // whether dragging chooses a stretch
     this.from = null; // where dragging began, pixels
+    this.handle = null; // what is dragged, with its numbers when that began
     this.line = add(document.createElement("div"), "div", { class: "peek" });
     this.band = add(document.createElement("div"), "div", { class: "band" });
     const { tools, home } = view;
@@ -59,9 +61,55 @@ class ChartHand {
 
   valueOf(left) { return this.view.plot.posToVal(left, "x"); }
 
+  // The handle at a pointer.
+  handleAt(event) {
+    const { plot, movable } = this.view;
+    const { left, top } = plot.over.getBoundingClientRect();
+    return movable.find(({ x, y }) => {
+      const across = plot.valToPos(x, "x") - (event.clientX - left);
+      const up = plot.valToPos(y, "y") - (event.clientY - top);
+      return Math.hypot(across, up) < REACH;
+    });
+  }
+
+  // Hold a handle: the ends of the axes stay until it is dropped.
+  grasp(handle, event) {
+    const { view } = this;
+    const { numbers } = view.page;
+    const keys = Object.keys(handle.keys).filter(numbers.has);
+    const at = Object.fromEntries(keys.map((key) => [key, numbers.at(key)]));
+    view.frozen = view.ends(view.plot);
+    this.handle = { ...handle, from: this.placeOf(event), at };
+  }
+
+  placeOf(event) {
+    const { plot } = this.view;
+    const { left, top } = plot.over.getBoundingClientRect();
+    const [right, below] = [event.clientX - left, event.clientY - top];
+    return { x: plot.posToVal(right, "x"), y: plot.posToVal(below, "y") };
+  }
+
+  // Move the numbers of the handle by as much as the pointer has moved.
+  pull(event) {
+    const { keys, from, at } = this.handle;
+    const to = this.placeOf(event);
+    const changes = Object.entries(at).map(([key, before]) => {
+      const [right, up] = keys[key];
+      return [key, before + right * (to.x - from.x) + up * (to.y - from.y)];
+    });
+    this.view.page.numbers.move(Object.fromEntries(changes));
+  }
+
   down(event) {
     if (event.button) return;
     const { chart, page, plot } = this.view;
+    const handle = !event.shiftKey && this.handleAt(event);
+    if (handle) {
+      plot.over.setPointerCapture(event.pointerId);
+      this.read(null);
+      this.grasp(handle, event);
+      return;
+    }
     this.from = this.leftOf(event);
     this.chosen = !chart.equal && (this.choosing || event.shiftKey || !chart.moves);
     plot.over.setPointerCapture(event.pointerId);
@@ -70,9 +118,14 @@ class ChartHand {
   }
 
   move(event) {
-    const { chart, page } = this.view;
+    const { chart, page, plot } = this.view;
     const left = this.leftOf(event);
+    if (this.handle) {
+      this.pull(event);
+      return;
+    }
     if (this.from === null) {
+      plot.over.classList.toggle("grab", Boolean(this.handleAt(event)));
       if (event.pointerType !== "touch") this.read(this.valueOf(left));
       if (this.varied) page.point(this.view.nearest(event));
     } else if (this.chosen) {
@@ -85,6 +138,12 @@ class ChartHand {
   }
 
   up(event) {
+    if (this.handle) {
+      if (event) this.pull(event);
+      this.view.page.numbers.settle();
+      this.handle = this.view.frozen = null;
+      return;
+    }
     const [from, chosen] = [this.from, this.chosen];
     this.from = null;
     this.band.hidden = true;

@@ -266,8 +266,10 @@ class ChartView {
       ],
       series: [null, ...this.chart.lines.map((line, k) => this.series(line, k))],
       hooks: {
+        drawAxes: [(plot) => this.ghost(plot)],
         draw: [
-          () => this.marks(), () => this.limits(), () => this.peaks(), () => this.follow(),
+          () => this.marks(), () => this.limits(), () => this.peaks(), () => this.handles(),
+          () => this.follow(),
         ],
       },
     }, this.data(), this.home);
@@ -280,6 +282,7 @@ class ChartView {
   // The ends of both axes; of one scale the shorter axis goes on to both sides.
   ends({ bbox }) {
     const { equal, ends } = this.chart;
+    if (this.frozen) return this.frozen;
     if (this.stretch) return [this.stretch, this.heights()];
     if (!equal || !bbox?.width) return ends;
     const sizes = [bbox.width, bbox.height];
@@ -322,6 +325,31 @@ class ChartView {
     const look = lookOf(line, k);
     const paths = (plot, row) => this.line(plot, row, line, look);
     return { label: line.label, stroke: "none", facets, paths };
+  }
+
+  // The lines of the same chart of another design, beneath.
+  ghost(plot) {
+    const one = this.page.ghost?.charts.find(({ name }) => name === this.chart.name);
+    if (!one || one.x !== this.chart.x) return;
+    const { ctx: pen, bbox } = plot;
+    pen.save();
+    pen.beginPath();
+    pen.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+    pen.clip();
+    pen.strokeStyle = this.page.colours.muted;
+    pen.lineWidth = uPlot.pxRatio;
+    pen.setLineDash([3 * uPlot.pxRatio, 3 * uPlot.pxRatio]);
+    pen.beginPath();
+    for (const { x, y, dots } of one.lines) {
+      for (let k = 0; k < x.length && !dots; k++) {
+        if (x[k] === null || y[k] === null) continue;
+        const spot = [plot.valToPos(x[k], "x", true), plot.valToPos(y[k], "y", true)];
+        if (k && x[k - 1] !== null && y[k - 1] !== null) pen.lineTo(...spot);
+        else pen.moveTo(...spot);
+      }
+    }
+    pen.stroke();
+    pen.restore();
   }
 
   // Straight from point to point; null interrupts the line.
@@ -448,6 +476,31 @@ class ChartView {
         pen.fill();
         pen.stroke();
       }
+    }
+    pen.restore();
+  }
+
+  // The handles whose numbers can be moved here.
+  get movable() {
+    const { numbers } = this.page;
+    if (!numbers) return [];
+    return this.chart.handles.filter(({ keys }) => Object.keys(keys).some(numbers.has));
+  }
+
+  // Small squares that can be dragged.
+  handles() {
+    const { ctx: pen } = this.plot;
+    const ratio = uPlot.pxRatio;
+    pen.save();
+    pen.setLineDash([]);
+    pen.lineWidth = 1.5 * ratio;
+    pen.strokeStyle = this.page.colours.accent;
+    pen.fillStyle = this.page.colours.ground;
+    for (const { x, y } of this.movable) {
+      const spot = [this.plot.valToPos(x, "x", true), this.plot.valToPos(y, "y", true)];
+      const [left, top] = spot.map((one) => one - 4 * ratio);
+      pen.fillRect(left, top, 8 * ratio, 8 * ratio);
+      pen.strokeRect(left, top, 8 * ratio, 8 * ratio);
     }
     pen.restore();
   }

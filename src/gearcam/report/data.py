@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import Any, Final
 
 import numpy as np
@@ -26,6 +27,7 @@ from gearcam.pictures.scenes import (
     MovingBody,
     Scene,
     extent,
+    handles_of,
 )
 
 _MM: Final = 4
@@ -66,8 +68,8 @@ def scene_data(scene: Scene) -> dict[str, Any]:
         (index in ``metal`` of the first chain of each of several plates), ``lines`` (``layer``,
         ``points``, ``closed``, ``dashed``), ``turn``, ``x`` and ``y`` (one number if constant),
         ``teeth`` (``[first, last]`` vertices of ``metal[0]``) or null, and ``names`` (``text``,
-        ``x`` and ``y`` in the body's frame); ``coloured``, each with
-        ``body``, ``points`` and ``values`` by label; ``scales`` by label, each with
+        ``x`` and ``y`` in the body's frame) and ``handles`` (x and y by name); ``coloured``, each
+        with ``body``, ``points`` and ``values`` by label; ``scales`` by label, each with
         ``least``, ``largest``, and where that is: ``place`` of the driver, ``body``, ``x`` and
         ``y`` on it; ``times``, seconds from the first place, or null; ``solids`` by name, those
         that do not move as the body of their name: each with ``axis``, ``turn``, ``x``, ``y`` and
@@ -135,6 +137,10 @@ def _body(body: MovingBody) -> dict[str, Any]:
             {"text": text, "x": round(at.real, _MM), "y": round(at.imag, _MM)}
             for text, at in body.names
         ],
+        "handles": {
+            name: [round(at.real, _MM), round(at.imag, _MM)]
+            for name, at in handles_of(body).items()
+        },
     }
 
 
@@ -202,8 +208,9 @@ def chart_data(name: str, chart: Chart, driver: str) -> dict[str, Any]:
         ``equal`` (whether both axes have one scale), ``moves`` (whether it has a cursor), ``range``
         (of the vertical axis, including the limits near the lines), ``ends`` (of both axes, with
         margins), ``lines`` (``label``, ``x``, ``y``, ``dots``), ``limits`` (``label``, ``value``,
-        ``seen``: whether it is within the range) and ``marks`` on the horizontal axis (``label``,
-        ``value``).
+        ``seen``: whether it is within the range), ``marks`` on the horizontal axis (``label``,
+        ``value``) and ``handles`` (``x``, ``y`` and ``keys``, the changes of
+        numbers by key for a unit of each axis).
     """
     low, high = chart.range
     across, up = (_significant if axis in chart.log else _digits for axis in "xy")
@@ -226,6 +233,7 @@ def chart_data(name: str, chart: Chart, driver: str) -> dict[str, Any]:
             for one in chart.limits
         ],
         "marks": [{"label": one.label, "value": one.value} for one in chart.marks],
+        "handles": [asdict(one) for one in chart.handles],
     }
 
 

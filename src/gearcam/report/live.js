@@ -3,12 +3,14 @@
 
 (() => {
   const live = JSON.parse(document.getElementById("live").textContent);
-  let { made, number } = live;
+  let { made, number, values } = live; // values are all numbers of the file
+  const FINE = 0.01; // step of a number without a slider
 
   // Numbers in the page that are not saved in the file, by key.
   let pending = {};
   let told = ""; // beside the buttons when nothing is pending
   const rows = new Map();
+  const locked = new Set(); // keys that dragging in the picture leaves as they are
 
   // While the server answers one request a second one is sent; more would only wait there.
   const MOST = 2;
@@ -80,6 +82,50 @@
     return answer.json();
   }
 
+  // The numbers, for what is dragged in the picture and in charts.
+  const numbers = {
+    has: (key) => key in values,
+    free: (key) => rows.has(key) && !locked.has(key) && !rows.get(key).key.integer,
+    at: (key) => pending[key] ?? values[key],
+    range: (key) => rows.get(key).key.high - rows.get(key).key.low,
+    unit: (key) => rows.get(key).key.unit,
+    allowed(key) {
+      const { least, most } = rows.get(key)?.key ?? {};
+      return [least ?? -Infinity, most ?? Infinity];
+    },
+    // small changes of those that may move, as shares of their ranges
+    steps: (share) => Object.fromEntries(
+      [...rows.values()]
+        .filter(({ key }) => numbers.free(key.key))
+        .map(({ key }) => [key.key, share * (key.high - key.low)]),
+    ),
+    async find(steps, place) {
+      try {
+        return await post("handles", { changes: pending, steps, place });
+      } catch {
+        return {}; // `ask` tells that the server has ended
+      }
+    },
+    move(changes) {
+      for (const [key, value] of Object.entries(changes)) {
+        const [least, most] = numbers.allowed(key);
+        const step = rows.get(key)?.key.step ?? FINE;
+        set(key, stepped({ step }, Math.min(most, Math.max(least, value))));
+      }
+      numbers.last = Object.keys(changes).filter((key) => key in pending);
+      if (numbers.last.length) ask(numbers.last, false);
+      return numbers.last.length > 0;
+    },
+    settle() {
+      if (numbers.last.every((key) => key in pending)) ask(numbers.last, true);
+    },
+    last: [], // those that were moved last
+    restore(values) {
+      for (const [key, value] of Object.entries(values)) set(key, value);
+    },
+  };
+  const tool = window.gearcam.parts && new HandleTool(window.gearcam, numbers);
+
   function ask(last, exact) {
     told = "";
     wanted = { changes: { ...pending }, last, exact };
@@ -93,10 +139,12 @@
     const from = made;
     wanted = null;
     flying += 1;
+    let taken = false;
     try {
       const reply = await post("follow", asked);
       if (!reply.stale && turn > arrived && from === made) {
         arrived = turn;
+        taken = true;
         take(reply, asked.last);
         if (reply.refused && asked.exact) remedy(reply.changes, asked.last, turn).catch(ended);
       }
@@ -104,6 +152,7 @@
       ended();
     }
     flying -= 1;
+    if (!taken) tool?.missed();
     send();
   }
 
@@ -118,19 +167,23 @@
     if (reply.document) {
       show(reply.document);
       for (const [key, value] of Object.entries(reply.changes)) {
-        if (key !== last) set(key, value);
+        if (![last].flat().includes(key)) set(key, value);
       }
     }
+    tool?.forget();
+    tool?.came(Boolean(reply.error));
     addButtons();
   }
 
   // Show a number at its slider and in its field; it is pending until it is saved.
   function set(key, value) {
     pending[key] = value;
+    if (value === values[key]) delete pending[key];
     const row = rows.get(key);
     if (!row) return;
+    row.slider.min = Math.min(row.slider.min, value);
+    row.slider.max = Math.max(row.slider.max, value);
     row.slider.value = row.field.value = value;
-    if (value === row.key.value) delete pending[key];
     row.place.classList.toggle("changed", key in pending);
     enable();
   }
@@ -138,7 +191,10 @@
   function enable() {
     const none = Object.keys(pending).length === 0;
     for (const id of ["save", "undo"]) document.getElementById(id).disabled = none;
-    document.getElementById("saved").textContent = none ? told : "Not saved.";
+    const others = Object.entries(pending).filter(([key]) => !rows.has(key));
+    const also = others.map(([key, value]) => ` ${key} = ${value}`).join(",");
+    document.getElementById("saved").textContent = none ? told
+      : also ? `Not saved, also${also}.` : "Not saved.";
   }
 
   // The value rounded to the step of the slider.
@@ -168,6 +224,14 @@
       ask(key.key, true);
     });
     const unit = element("span", { textContent: key.unit });
+    const lock = element("input", { type: "checkbox", className: "lock", checked: locked.has(key.key) });
+    lock.title = "Locked: what is dragged in the picture leaves this number";
+    lock.setAttribute("aria-label", `lock ${key.key}`);
+    lock.addEventListener("change", () => {
+      locked[lock.checked ? "add" : "delete"](key.key);
+      window.gearcam.redraw?.();
+    });
+    label.prepend(lock, " ");
     const place = element("div", { className: "key" }, label, slider, field, unit, told);
     rows.set(key.key, { key, slider, field, place });
     return place;
@@ -202,8 +266,22 @@
     save.addEventListener("click", store);
     undo.addEventListener("click", back);
     const heading = element("h2", { id: "numbered", textContent: "Numbers in the design file" });
+    const ghost = element("button", { id: "ghost", type: "button", textContent: "Keep as a ghost" });
+    ghost.title = "Draw the design as it is now beneath what comes";
+    ghost.setAttribute("aria-pressed", "false");
+    ghost.addEventListener("click", () => freeze(ghost));
     const buttons = element("p", {}, save, " ", undo, " ", saved);
-    document.getElementById("numbers").replaceChildren(heading, ...groups.values(), buttons);
+    const hint = element("small", { textContent: "What is ringed in the picture, and the squares on "
+      + "charts, can be dragged; a number that is ticked is locked and stays as it is." });
+    const home = document.getElementById("numbers");
+    const more = window.gearcam.parts ? [element("p", {}, ghost), hint] : [];
+    home.replaceChildren(heading, ...groups.values(), buttons, ...more);
+  }
+
+  function freeze(button) {
+    const on = button.getAttribute("aria-pressed") !== "true";
+    button.setAttribute("aria-pressed", on);
+    window.gearcam.freeze(on);
   }
 
   async function store() {
@@ -232,6 +310,7 @@
     tell(state.error, Boolean(state.error));
     if (state.made !== made) {
       made = state.made;
+      values = state.values;
       offer(state.keys);
     }
     addButtons();
@@ -257,6 +336,11 @@
   });
 
   window.gearcam.solids.from(solids);
+  if (tool) {
+    window.gearcam.page.numbers = numbers;
+    window.gearcam.page.seen.marked = (_, pixel) => tool.marks(pixel);
+    window.gearcam.parts.tool = tool;
+  }
   const events = new EventSource("events");
   events.onmessage = (event) => follow(event).catch(ended);
   events.onerror = ended;

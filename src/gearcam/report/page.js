@@ -27,6 +27,8 @@ const page = {
   },
   colours: palette(),
   playing: false,
+  ghost: null, // another document that is drawn beneath this one
+  numbers: null, // those of the design file in the live view: `at`, `has`, `move`
   forth: 1, // -1 on the way back of an open pair
   get scene() { return this.shown.scene; },
   get title() { return this.shown.title; },
@@ -388,8 +390,23 @@ function present(whole) {
   charts.show(page.shown.charts);
 }
 
+// Keep the document shown as a ghost beneath those to come, or let go of it.
+function freeze(on) {
+  page.ghost = on ? page.shown : null;
+  page.seen.ghost = page.ghost?.scene;
+  draw();
+  charts.repaint();
+}
+
 window.gearcam = {
   show,
+  page,
+  parts,
+  charts,
+  freeze,
+  redraw,
+  placed,
+  dot,
   go,
   svg,
   solids,

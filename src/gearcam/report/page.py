@@ -107,7 +107,7 @@ def page(
         "style": _contents("uPlot/uPlot.min.css", "page.css", "solids.css"),
         "script": _contents(*(SCRIPTS if document["scene"] else STILL)),
         "live_style": _contents("live.css") if live else "",
-        "live_script": _contents("live.js") if live else "",
+        "live_script": _contents("handles.js", "live.js") if live else "",
         "licence": _contents("uPlot/LICENSE"),
     }
     return rendered("page.html", values).encode()

@@ -9,6 +9,7 @@ function palette(paper = false) {
   root.classList.toggle("paper", paper || before);
   const style = getComputedStyle(root);
   const names = ["ground", "text", "muted", "rule", "contact", "pitch", "centrode", "limit"];
+  names.push("accent");
   for (const k of [1, 2, 3]) names.push(`fill-${k}`, `ink-${k}`, `floor-${k}`, `carry-${k}`);
   for (const k of [1, 2, 3, 4, 5, 6]) names.push(`line-${k}`);
   for (let k = 1; k <= LEVELS; k++) names.push(`level-${k}`);
@@ -56,18 +57,32 @@ class Parts {
     this.fitted = true;
     this.following = false;
     this.touches = new Map();
+    this.tool = null; // is offered what the pointer does before the view is moved
+    this.held = null; // the pointer that the tool has taken
     this.view = { x: 0, y: 0, scale: 1 }; // centre, mm, and pixels per mm
     new ResizeObserver(() => this.resize()).observe(canvas);
     canvas.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
     canvas.addEventListener("pointerdown", (event) => this.down(event));
     canvas.addEventListener("pointermove", (event) => this.drag(event));
     for (const name of ["pointerup", "pointercancel"]) {
-      canvas.addEventListener(name, (event) => this.touches.delete(event.pointerId));
+      canvas.addEventListener(name, (event) => this.up(event));
     }
   }
 
+  // Where a pointer is, mm, and how many mm a pixel has.
+  spotOf({ offsetX, offsetY }) {
+    const { width, height } = this.size;
+    const { x, y, scale } = this.view;
+    return {
+      x: x + (offsetX - 0.5 * width) / scale, y: y - (offsetY - 0.5 * height) / scale,
+      pixel: 1 / scale,
+    };
+  }
+
+  // The view stays where it is while a tool holds something in it.
   set scene(scene) {
     this.own = scene;
+    if (this.held !== null) return;
     const [left, bottom, right, top] = scene.box;
     const shape = (right - left) / (top - bottom);
     // a scene that is very flat gets a flatter canvas, with room to zoom
@@ -129,13 +144,35 @@ class Parts {
   }
 
   down(event) {
+    if (!this.touches.size && !event.button && this.tool?.take(this.spotOf(event), event)) {
+      this.held = event.pointerId;
+      this.canvas.setPointerCapture(event.pointerId);
+      return;
+    }
     this.touches.set(event.pointerId, { x: event.offsetX, y: event.offsetY });
     this.canvas.setPointerCapture(event.pointerId);
   }
 
+  up(event) {
+    if (this.held === event.pointerId) {
+      this.held = null;
+      this.tool?.drop();
+      this.scene = this.own;
+      this.moved();
+    }
+    this.touches.delete(event.pointerId);
+  }
+
   drag(event) {
+    if (this.held === event.pointerId) {
+      this.tool?.drag(this.spotOf(event));
+      return;
+    }
     const before = this.touches.get(event.pointerId);
-    if (!before) return;
+    if (!before) {
+      this.tool?.over(this.spotOf(event), event);
+      return;
+    }
     const now = { x: event.offsetX, y: event.offsetY };
     const other = [...this.touches].find(([id]) => id !== event.pointerId)?.[1];
     this.touches.set(event.pointerId, now);

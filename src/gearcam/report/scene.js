@@ -178,6 +178,7 @@ function* colouredMarks({ coloured, scales }, label, poses, pixel) {
    them where it would reach over `edge`, its base so many pixels below (`drop`). `seen` selects what
    is shown. */
 function* marksOf(scene, place, cycles, seen, pixel, edge = Infinity) {
+  if (seen.ghost) yield* ghostMarks(seen.ghost, place);
   const found = touchingIn(scene, seen.contacts, place);
   const poses = posesOf(scene, place, cycles);
   const tone = tones(scene);
@@ -203,6 +204,28 @@ function* marksOf(scene, place, cycles, seen, pixel, edge = Infinity) {
   const pitch = seen.pitch && pitchAt(scene, place);
   if (pitch) yield dot(pitch, 4 * pixel, "pitch");
   if (seen.names) yield* nameMarks(scene, poses, pixel, edge);
+  if (seen.marked) yield* seen.marked(poses, pixel);
+}
+
+// Another design at the same place, as outlines beneath this one.
+function* ghostMarks(scene, place) {
+  const { places, bodies } = scene;
+  const poses = posesOf(scene, Math.min(places.at(-1), Math.max(places[0], place)));
+  for (const [k, body] of bodies.entries()) {
+    const lines = body.lines.filter((one) => !one.dashed);
+    for (const line of lines) line.chains ??= [line.points];
+    const drawn = [
+      { chains: body.metal, closed: true },
+      ...lines.map(({ chains, closed }) => ({ chains, closed })),
+    ];
+    for (const one of drawn) yield { ...one, ink: "muted", dash: [3, 3], pose: poses[k] };
+  }
+}
+
+// Where a point in the frame of a body is.
+function placed({ turn, x, y }, [left, up]) {
+  const [cos, sin] = [Math.cos(turn), Math.sin(turn)];
+  return { x: x + cos * left - sin * up, y: y + sin * left + cos * up };
 }
 
 // The names of joints and members: those of one place in one line, others that would cover each
@@ -210,9 +233,8 @@ function* marksOf(scene, place, cycles, seen, pixel, edge = Infinity) {
 function nameMarks(scene, poses, pixel, edge) {
   const found = [];
   for (const [k, body] of scene.bodies.entries()) {
-    const [cos, sin] = [Math.cos(poses[k].turn), Math.sin(poses[k].turn)];
     for (const { text, x, y } of body.names) {
-      const at = { x: poses[k].x + cos * x - sin * y, y: poses[k].y + sin * x + cos * y };
+      const at = placed(poses[k], [x, y]);
       const near = found.find((one) => Math.hypot(one.x - at.x, one.y - at.y) < NAMES * pixel);
       if (near) near.text += `, ${text}`;
       else found.push({ text, chains: [], ink: "text", drop: ABOVE, ...at });

@@ -60,7 +60,8 @@ def sliders(text: str, reads: Callable[[str], bool]) -> list[dict[str, Any]]:
     -------
     list of dict
         For each number that can be changed alone or together with its `equals`: ``key``, ``doc``,
-        ``unit``, ``value``, ``low``, ``high``, ``step``, ``integer``.
+        ``unit``, ``value``, ``low``, ``high``, ``step``, ``integer``; ``least`` and ``most``, all
+        that its key allows, or null.
     """
     document, values = document_in(text, ""), numbers(text)
     sliders = []
@@ -87,10 +88,19 @@ def sliders(text: str, reads: Callable[[str], bool]) -> list[dict[str, Any]]:
                     "low": low,
                     "high": high,
                     "step": step,
+                    **_bounds(entry, step),
                     "integer": entry.base is int,
                 }
             )
     return sliders
+
+
+def _bounds(entry: Key, step: float) -> dict[str, float | None]:
+    """Return the least and the most that a key allows; None without such."""
+    param = entry.param
+    least = param.ge if param.gt is None else param.gt + step
+    most = param.le if param.lt is None else param.lt - step
+    return {"least": least, "most": most}
 
 
 def span(entry: Key, value: float) -> tuple[float, float, float]:

@@ -122,6 +122,7 @@ class Handler(BaseHTTPRequestHandler):
             {
                 "follow": lambda: self._reply(session.follow),
                 "remedies": lambda: self._reply(session.remedies),
+                "handles": lambda: self._reply(session.handles),
                 "solids": lambda: self._reply(session.solids),
                 "save": lambda: self._reply(session.save, HTTPStatus.CONFLICT),
             }

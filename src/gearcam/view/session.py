@@ -71,6 +71,7 @@ class State:
             "number": self.number,
             "document": self.news,
             "keys": self.sliders,
+            "values": numbers(self.text) if self.text else {},
             "made": self.made,
             "error": self.error,
         }
@@ -100,7 +101,8 @@ class Session:
         self._workers = workers
         self._notice = notice
         self._news = threading.Condition()
-        self._newest, self._search, self._models = _Newest(count), _Newest(1), _Newest(1)
+        self._newest, self._search = _Newest(count), _Newest(1)
+        self._models, self._grips = _Newest(1), _Newest(1)
         self._turn = self._whole = 0
 
     def refresh(self, content: bytes | None) -> None:
@@ -182,7 +184,7 @@ class Session:
         Parameters
         ----------
         asked : mapping
-            ``changes``, ``last``, ``exact``.
+            ``changes``; ``last``, the key that was changed last, or several; ``exact``.
 
         Returns
         -------
@@ -194,9 +196,9 @@ class Session:
         RequestError
             If ``changes`` are not numbers of the file, or ``last`` is not one of them.
         """
-        state, changes, last = self.state, asked.get("changes"), asked.get("last")
-        values = _values(changes, state)
-        if not isinstance(last, str) or last not in values:
+        state = self.state
+        values, last = _values(asked.get("changes"), state), _keys(asked.get("last"))
+        if not last or not {*last} <= values.keys():
             raise RequestError("last: not a key of the changes")
         exact = asked.get("exact") is True
 
@@ -215,7 +217,7 @@ class Session:
         Parameters
         ----------
         asked : mapping
-            ``changes``, and ``last``, the key of that of which no remedy undoes the change.
+            ``changes``, and ``last``, the key, or keys, whose changes no remedy undoes.
 
         Returns
         -------
@@ -228,11 +230,41 @@ class Session:
             If ``changes`` are not numbers of the file.
         """
         text = replaced(self.state.text, _values(asked.get("changes"), self.state))
-        last, given = asked.get("last"), numbers(self.state.text)
-        before = {last: given[last]} if isinstance(last, str) and last in given else None
+        given = numbers(self.state.text)
+        before = {key: given[key] for key in _keys(asked.get("last")) if key in given} or None
         return self._search.run(
             lambda: _result(self._workers.submit(work.seek, text, self.file, before), self.file)
         )
+
+    def handles(self, asked: Mapping[str, Any]) -> dict[str, Any] | None:
+        """Return what can be dragged in the picture (see `work.grips`).
+
+        Parameters
+        ----------
+        asked : mapping
+            ``changes``, which may be none; ``steps``, small changes by key; ``place``.
+
+        Returns
+        -------
+        dict or None
+            None if overtaken by a newer request.
+
+        Raises
+        ------
+        RequestError
+            If ``changes`` or ``steps`` are not numbers of the file, or ``place`` is none.
+        """
+        state, place = self.state, asked.get("place")
+        changes = _changes(asked, state)
+        steps = {key: one for key, one in _values(asked.get("steps"), state).items() if one}
+        if not isinstance(place, int | float) or not abs(place) <= _LARGEST:
+            raise RequestError("place: not a number")
+
+        def found() -> work.Reply:
+            asked = (state.text, self.file, changes, steps, float(place))
+            return _result(self._workers.submit(work.grips, *asked), self.file)
+
+        return self._grips.run(found)
 
     def solids(self, asked: Mapping[str, Any]) -> dict[str, Any] | None:
         """Return a view of the solids of a design with changed numbers (see `work.solids`).
@@ -252,9 +284,7 @@ class Session:
         RequestError
             If ``changes`` are not numbers of the file.
         """
-        changes = asked.get("changes")
-        values = {} if changes == {} else _values(changes, self.state)
-        text = replaced(self.state.text, values)
+        text = replaced(self.state.text, _changes(asked, self.state))
         return self._models.run(
             lambda: _result(self._workers.submit(work.solids, text, self.file), self.file)
         )
@@ -323,6 +353,17 @@ class _Newest:
             with self._free:
                 self._places += 1
                 self._free.notify_all()
+
+
+def _keys(given: Any) -> list[str]:
+    """Return the keys that a page has sent: one, or a list."""
+    return [str(key) for key in (given if isinstance(given, list) else [given])]
+
+
+def _changes(asked: Mapping[str, Any], state: State) -> dict[str, float]:
+    """Return the changed numbers of a request; none is allowed."""
+    changes = asked.get("changes")
+    return {} if changes == {} else _values(changes, state)
 
 
 def _values(changes: Any, state: State) -> dict[str, float]:

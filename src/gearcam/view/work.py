@@ -7,9 +7,9 @@ pickled. A *reply* contains a ``document``, or an ``error`` in words.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import replace
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 from gearcam import build, remedies
 from gearcam.base.errors import DesignError, GearcamError, InfeasibleError
@@ -18,11 +18,16 @@ from gearcam.console import fault_text, quieten, refusal_text, remedy_lines
 from gearcam.designs.design import Design, loads
 from gearcam.designs.reader import content_of, decoded
 from gearcam.numeric.arrays import keep_freed_memory
+from gearcam.pictures.scenes import Scene
 from gearcam.report.file import solids_shown
-from gearcam.report.page import document, draft
+from gearcam.report.page import DRAFT_PLACES, document, draft
+from gearcam.results.result import Result
+from gearcam.view.handles import handles
 from gearcam.view.numbers import Values, equals, numbers, replaced, sliders, tidy
 
 Reply = dict[str, Any]
+
+_T = TypeVar("_T")
 
 _CHORDS: Final = "output.chord_tolerance_mm"
 
@@ -126,12 +131,8 @@ def solids(text: str, file: str) -> Reply:
     return _reply(lambda: solids_shown(build(loads(text, file=file))), file)
 
 
-def follow(text: str, file: str, changes: Values, last: str, exact: bool) -> bytes:
-    """Return the document of a design file with changed numbers, and with others if required.
-
-    Some numbers cannot change alone, such as the first ratio of a closed law, which equals the
-    last. If the design is refused, equal numbers of the same list are changed too; then the first
-    remedy that the refusal names and that does not change `last` is tried.
+def grips(text: str, file: str, changes: Values, steps: Values, place: float) -> Reply:
+    """Find what can be dragged in the picture.
 
     Parameters
     ----------
@@ -141,8 +142,43 @@ def follow(text: str, file: str, changes: Values, last: str, exact: bool) -> byt
         Its name.
     changes : mapping of str to float
         New values by key.
-    last : str
-        The key that was changed last; its value is kept.
+    steps : mapping of str to float
+        Small changes of the numbers that may move, by key.
+    place : float
+        Place of the driver, in the unit of the scene.
+
+    Returns
+    -------
+    dict
+        ``handles`` (see `gearcam.view.handles.handles`).
+    """
+
+    def drawn(values: Values) -> Scene | None:
+        return _coarsely(
+            loads(replaced(text, values), file=file),
+            lambda result: result.plain.scene(DRAFT_PLACES),
+        )
+
+    return _reply(lambda: {"handles": handles(drawn, numbers(text), changes, steps, place)}, file)
+
+
+def follow(text: str, file: str, changes: Values, last: Collection[str], exact: bool) -> bytes:
+    """Return the document of a design file with changed numbers, and with others if required.
+
+    Some numbers cannot change alone, such as the first ratio of a closed law, which equals the
+    last. If the design is refused, equal numbers of the same list are changed too; then the first
+    remedy that the refusal names and that does not change any of `last` is tried.
+
+    Parameters
+    ----------
+    text : str
+        Text of the design file.
+    file : str
+        Its name.
+    changes : mapping of str to float
+        New values by key.
+    last : collection of str
+        The keys that were changed last; their values are kept.
     exact : bool
         Whether to return the whole document instead of a draft.
 
@@ -164,7 +200,11 @@ def follow(text: str, file: str, changes: Values, last: str, exact: bool) -> byt
 
 
 def _first(
-    text: str, changes: Values, last: str, answer: Callable[[Values], Reply], file: str
+    text: str,
+    changes: Values,
+    last: Collection[str],
+    answer: Callable[[Values], Reply],
+    file: str,
 ) -> Reply:
     """Return the reply for the changes alone or, if refused, together with required ones."""
     values = numbers(text)
@@ -173,11 +213,16 @@ def _first(
     def required() -> Iterator[Values]:
         """Yield what to change too: nothing, equal numbers, what each refusal names."""
         yield {}
-        if equal := equals(values, last, changes[last]):
+        equal = {key: one for own in last for key, one in equals(values, own, changes[own]).items()}
+        if equal := {key: one for key, one in equal.items() if key not in last}:
             yield equal
         for more, error in tuple(refusals):
             ways = (_items(way.near) for way in getattr(error, "adjustments", ()))
-            fit = (way for way in ways if way and last not in way and way.keys() <= values.keys())
+            fit = (
+                way
+                for way in ways
+                if way and not way.keys() & {*last} and way.keys() <= values.keys()
+            )
             if near := next(fit, None):
                 yield {**more, **near}
 
@@ -206,13 +251,18 @@ def _items(near: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _draft(design: Design) -> Reply:
+    return _coarsely(design, draft)
+
+
+def _coarsely(design: Design, make: Callable[[Result], _T]) -> _T:
+    """Return what `make` makes of a design with coarse chords."""
     result = build(design)
     try:
-        return draft(result.coarse())
+        return make(result.coarse())
     except InfeasibleError as error:
         if _CHORDS not in str(error):
             raise
-    return draft(result)  # the teeth are too small for coarse chords
+    return make(result)  # the teeth are too small for coarse chords
 
 
 def _text(content: bytes | None, file: str) -> str:

@@ -154,7 +154,7 @@ def test_what_is_no_small_json_object_is_refused(
         {"changes": {}},
         {"changes": {"pair.module_mm": 2}},
         {"changes": {"pair.module_mm": 2}, "last": "pair.face_width_mm"},
-        {"changes": {"pair.module_mm": 2}, "last": ["pair.module_mm"]},
+        {"changes": {"pair.module_mm": 2}, "last": ["pair.module_mm", "pair.x"]},
         {"changes": {"name": 2}, "last": "name"},
         {"changes": {"pair.x": 0.1}, "last": "pair.x"},
         {"changes": {"pair.teeth": 2}, "last": "pair.teeth"},

@@ -227,14 +227,14 @@ the mean of its ends, ratios[0] + ratios[1] = 2 closes it."""
 
 @pytest.mark.parametrize(("key", "value", "others"), FOLLOWED)
 def test_what_has_to_follow_follows(key: str, value: float, others: dict[str, float]) -> None:
-    reply = json.loads(work.follow(NAIL.read_text(), str(NAIL), {key: value}, key, False))
+    reply = json.loads(work.follow(NAIL.read_text(), str(NAIL), {key: value}, [key], False))
     assert reply["error"] == ""
     assert reply["changes"] == {key: value, **others}
 
 
 def test_what_nothing_can_follow_is_refused_as_it_is_built() -> None:
     key = "blank.bore_diameter_mm[0]"
-    reply = json.loads(work.follow(NAIL.read_text(), str(NAIL), {key: 200.0}, key, False))
+    reply = json.loads(work.follow(NAIL.read_text(), str(NAIL), {key: 200.0}, [key], False))
     assert "the bore reaches the root of the teeth" in reply["error"]
     assert "document" not in reply
 
@@ -242,7 +242,7 @@ def test_what_nothing_can_follow_is_refused_as_it_is_built() -> None:
 def test_of_what_follows_the_cause_that_is_left_is_told() -> None:
     """The last ratio follows the first and the second closes the law, which then has no teeth."""
     key, followed = "law.ratios[0]", {"law.ratios[1]": 0.04, "law.ratios[2]": 1.96}
-    reply = json.loads(work.follow(NAIL.read_text(), str(NAIL), {key: 1.96}, key, False))
+    reply = json.loads(work.follow(NAIL.read_text(), str(NAIL), {key: 1.96}, [key], False))
     assert reply["refused"]
     assert reply["changes"] == {key: 1.96, **followed}
     design = load(NAIL).with_(reply["changes"])
@@ -265,7 +265,7 @@ def test_no_remedy_undoes_a_change() -> None:
 def test_small_teeth_are_drawn_with_their_own_chords() -> None:
     text = DESIGN.replace("2.0", "0.5")  # m/50 is finer than a draft's chords
     key = "pair.module_mm"
-    reply = json.loads(work.follow(text, "a.toml", {key: 0.51}, key, False))
+    reply = json.loads(work.follow(text, "a.toml", {key: 0.51}, [key], False))
     assert reply["error"] == ""
 
 

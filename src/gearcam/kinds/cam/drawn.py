@@ -7,6 +7,7 @@ follower, and profiles are coloured by values along them.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
@@ -17,12 +18,13 @@ from gearcam.base.numerals import formatted
 from gearcam.cams.checks import KIND, pressure_limits
 from gearcam.cams.wall import PitchMotion, Wall
 from gearcam.kinds.cam.result import pressure_column, rho_column
-from gearcam.kinds.over_driver import over_driver
+from gearcam.kinds.over_driver import lift_handles, over_driver
+from gearcam.laws.phases_of_lift import fill_half
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.numeric.pose import Pose
 from gearcam.parts.checks import KIND as PARTS_KIND
-from gearcam.pictures.charts import Chart, Charts, Limit, Line
+from gearcam.pictures.charts import Chart, Charts, Handle, Limit, Line
 from gearcam.pictures.drawings import (
     CENTER,
     FOLLOWER,
@@ -67,7 +69,16 @@ def _of_lift(name: str, result: CamResult) -> Chart:
         x, y = result.driver.scale * theta, result.follower.lift_unit[0] * lift
         lines.append(Line(label="given points, before smoothing", x=x, y=y, dots=True))
     title = f"{name.capitalize()} of the follower"
-    return over_driver(result)(title=title, y=f"{name}, {unit}", lines=(*lines,))
+    handles = _lift_handles(result) if name == "lift" else ()
+    return over_driver(result)(
+        title=title, y=f"{name}, {unit}", lines=(*lines,), handles=(*handles,)
+    )
+
+
+def _lift_handles(result: CamResult) -> Iterator[Handle]:
+    phases = result.design.motion
+    half = result.form.half_turns and isinstance(phases, tuple) and fill_half(phases)
+    return lift_handles(result.driver, result.follower.lift_unit, phases, half=half)
 
 
 def _pressure_angle(result: CamResult) -> Chart | None:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final, get_args
 
 import numpy as np
@@ -15,6 +16,7 @@ from gearcam.gears.contact import COAST, DRIVE, FlankPairs
 from gearcam.gears.pair import Gear
 from gearcam.gears.subject import KIND
 from gearcam.kinds.gear_pair.result import CENTRODE_POINTS, Side
+from gearcam.laws.ratio.phases import Phases
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.edges import first_touch, known_to
 from gearcam.meshing.patches import closed_area
@@ -22,7 +24,7 @@ from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
 from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Part
-from gearcam.pictures.charts import Chart, Charts, Limit, Line, knot_marks
+from gearcam.pictures.charts import Chart, Charts, Handle, Limit, Line, knot_marks
 from gearcam.pictures.drawings import (
     CENTER,
     CENTRODE,
@@ -86,7 +88,19 @@ def _ratio(result: GearPairResult) -> Chart:
         return _chart(result, "Velocity of the rack", "velocity, mm/rad", table["phi1_deg"], line)
     table = result.centrodes_of_phases
     line = {"ratio i21": table["ratio"]}
-    return _chart(result, "Transmission ratio", "ratio i21", table["phi1_deg"], line)
+    chart = _chart(result, "Transmission ratio", "ratio i21", table["phi1_deg"], line)
+    return replace(chart, handles=(*_ratio_handles(result.design.law),))
+
+
+def _ratio_handles(law: object) -> Iterator[Handle]:
+    """Yield handles at the knots of a law that is given by ratios there."""
+    if isinstance(law, Phases):
+        for k, (knot, ratio) in enumerate(zip(law.knots, law.ratios, strict=True)):
+            if isinstance(knot, float | int) and isinstance(ratio, float | int):
+                keys = {f"law.ratios[{k}]": (0.0, 1.0)}
+                if 0 < k < len(law.knots) - 1:  # the ends of a turn stay
+                    keys[f"law.knots_deg[{k}]"] = (1.0, 0.0)
+                yield Handle(x=math.degrees(knot), y=float(ratio), keys=keys)
 
 
 def _radii(result: GearPairResult) -> Chart:

@@ -9,6 +9,7 @@ and the roller runs along it; the solids move in space: the cam turns, the rolle
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
@@ -22,6 +23,7 @@ from gearcam.kinds.gridded_drawn import (
     spread_chart,
     unrolled_scene,
 )
+from gearcam.kinds.over_driver import lift_handles
 from gearcam.kinds.spatial_cam.result import ROLLER
 from gearcam.numeric.pose import Pose
 from gearcam.parts.shapes import Circle
@@ -52,11 +54,17 @@ _MOTION: Final[Charts] = {
     for name in ("lift", "velocity", "acceleration", "jerk")
 }
 
+
+def _lift(result: SpatialCamResult) -> Chart:
+    handles = lift_handles(result.driver, result.lift_unit, result.design.motion)
+    return replace(_MOTION["lift"](result), handles=(*handles,))
+
+
 CHARTS: Final[Charts] = {
-    "lift": _MOTION["lift"],
+    "lift": _lift,
     "pressure_angle": _pressure,
     "spread": _spread,
-    **_MOTION,
+    **{name: one for name, one in _MOTION.items() if name != "lift"},
 }
 """Charts by name; the report leads with the first three."""
 
