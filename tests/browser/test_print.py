@@ -22,7 +22,7 @@ from gearcam.report.file import solids_shown
 from gearcam.report.page import charts_page, document, page
 from gearcam.sweep.page import page as swept
 from gearcam.sweep.rows import measured
-from helpers_browser import open_page
+from helpers_browser import LAPTOP, open_page
 from helpers_pairs import PROFILES
 from helpers_print import Sheet, filled, found, outside, overlaps, printed
 
@@ -111,7 +111,7 @@ def _content(name: str) -> bytes:
 
 
 def on_paper(browser: Chrome, path: Path, paper: str, margin: float, **media: str) -> OnPaper:
-    open_page(browser, path, **media)
+    open_page(browser, path, LAPTOP, **media)
     told = browser.execute_script(TOLD)
     return OnPaper(margin, told, printed(browser, paper, margin))
 
