@@ -287,7 +287,7 @@ def test_paper_is_light_without_controls_and_leaves_no_trace(
     before, paper, after = browser.execute_script("return seen")
     assert (before[0] < 60, paper[0], after[0]) == (True, 255, before[0])
     assert after[1][: len(before[1])] == before[1]
-    assert paper[1] == [676, *[330] * (len(paper[1]) - 1)]  # the first over both columns
+    assert paper[1] == [640, *[312] * (len(paper[1]) - 1)]  # the first over both columns
     browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
     for name in ("controls", "options"):
         assert not browser.find_element(By.ID, name).is_displayed()

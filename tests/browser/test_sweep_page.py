@@ -44,6 +44,12 @@ def text(browser: Chrome, place: str) -> str:
     return browser.find_element(By.ID, place).text
 
 
+def file_of(browser: Chrome) -> str:
+    """Return the design file of the variant that is shown, which is folded."""
+    (found,) = until(lambda: browser.find_elements(By.CSS_SELECTOR, "#variant pre"))
+    return str(found.get_property("textContent"))
+
+
 def front(browser: Chrome) -> list[str]:
     """Return the first column of the front, read at once: the page may draw it anew meanwhile."""
     return browser.execute_script(
@@ -88,19 +94,19 @@ def test_a_range_on_an_axis_keeps_its_variants(opened: Chrome) -> None:
 
 
 def end(browser: Chrome, fact: str, word: str) -> WebElement:
-    """The end of a range on the axis of a fact, at ``least`` or at ``most``."""
+    """The end of a range on the axis of a fact, by its label, at ``least`` or at ``most``."""
     return browser.find_element(By.CSS_SELECTOR, f"[aria-label='{fact}, at {word}']")
 
 
 @pytest.mark.slow
 def test_the_ends_of_a_range_are_moved_by_keys(opened: Chrome) -> None:
     """Eccentricities are 0.05 to 0.5, and 3, which is refused: the axis is 2.95 long."""
-    most, least = (end(opened, "law.eccentricity", word) for word in ("most", "least"))
+    most, least = (end(opened, "eccentricity", word) for word in ("most", "least"))
     reached = set()
     for _ in range(60):
         ActionChains(opened).send_keys(Keys.TAB).perform()
         reached.add(opened.execute_script("return document.activeElement.ariaLabel"))
-    assert {f"law.eccentricity, at {word}" for word in ("least", "most")} <= reached
+    assert {f"eccentricity, at {word}" for word in ("least", "most")} <= reached
     for keys, kept, value in (
         ([Keys.PAGE_DOWN], "10 of 11", 2.705),
         ([Keys.ARROW_UP, Keys.ARROW_RIGHT, Keys.ARROW_DOWN], "10 of 11", 2.7345),
@@ -125,7 +131,7 @@ def test_the_ends_of_a_range_are_moved_by_keys(opened: Chrome) -> None:
 
 
 def test_an_end_of_a_range_is_dragged(opened: Chrome) -> None:
-    most = end(opened, "law.eccentricity", "most")
+    most = end(opened, "eccentricity", "most")
     opened.execute_script("arguments[0].scrollIntoView({block: 'center'})", most)
     ActionChains(opened).click_and_hold(most).move_by_offset(0, 60).release().perform()
     until(lambda: "10 of 11" in text(opened, "shown"))
@@ -146,7 +152,7 @@ def test_a_click_shows_a_design_file_that_makes_these_facts(
     ActionChains(opened).move_to_element_with_offset(
         points, int(place[0] - points.size["width"] / 2), int(place[1] - points.size["height"] / 2)
     ).click().perform()
-    written = until(lambda: opened.find_elements(By.CSS_SELECTOR, "#variant pre"))[0].text
+    written = file_of(opened)
     design = gc.loads(written)
     assert design.name == f"{BASE.name}_6"
     built: dict[str, Any] = gc.build(design).record()
@@ -215,14 +221,14 @@ def test_words_are_axes_and_stand_in_the_file(browser: Chrome, tmp_path: Path) -
     open_page(browser, file)
     assert not browser.get_log("browser")
     assert browser.find_element(By.ID, "x").get_attribute("value") == "pair.teeth"
-    least = end(browser, "pair.teeth", "least")
+    least = end(browser, "teeth, pair", "least")
     first = least.get_attribute("aria-valuetext")
     least.send_keys(Keys.ARROW_UP)  # by one word
     until(lambda: "2 of 3" in text(browser, "shown"))
     assert least.get_attribute("aria-valuetext") != first
     least.send_keys(Keys.HOME)
     browser.find_element(By.ID, "number").send_keys("2", Keys.ENTER)
-    written = until(lambda: browser.find_elements(By.CSS_SELECTOR, "#variant pre"))[0].text
+    written = file_of(browser)
     built: dict[str, Any] = gc.build(gc.loads(written)).record()
     assert {**built, "name": BASE.name} == made[2].facts
 
@@ -232,7 +238,7 @@ def test_a_single_variant_is_shown(browser: Chrome, rows: list[Built], tmp_path:
     file.write_bytes(page(BASE, rows[:1], []))
     open_page(browser, file)
     assert not browser.get_log("browser")
-    assert "law.eccentricity" in text(browser, "variant")
+    assert "eccentricity" in text(browser, "variant")
     assert not browser.find_element(By.ID, "points").is_displayed()
 
 
@@ -241,7 +247,7 @@ def test_the_longest_name_is_cut(browser: Chrome, tmp_path: Path) -> None:
     file = tmp_path / "name.html"
     file.write_bytes(page(base, [Built(number=123456, values={"law.eccentricity": 0.2})], []))
     open_page(browser, file)
-    written = browser.find_element(By.CSS_SELECTOR, "#variant pre").text
+    written = file_of(browser)
     assert gc.loads(written).name == "n" * 80 + "_123456"
 
 

@@ -150,8 +150,8 @@ def sweep_page(title: str, words: Mapping[str, Any], content: Mapping[str, Any])
     title : str
         Its title.
     words : mapping
-        ``lines`` at the top, ``reasons`` of refusals with their numbers, and names of ``constant``
-        facts.
+        ``lines`` at the top, ``reasons`` of refusals with their numbers, ``constant`` facts, and
+        whether goals are ``sought``: then the best come before all charts but one.
     content : mapping
         Data for the script (see `gearcam.sweep.page`).
 
@@ -164,7 +164,7 @@ def sweep_page(title: str, words: Mapping[str, Any], content: Mapping[str, Any])
         "title": title,
         "data": _embedded(content),
         "style": _contents("page.css", "sweep.css"),
-        "script": _contents("sweep.js", "sweep_page.js"),
+        "script": _contents("sweep.js", "sweep_best.js", "sweep_page.js"),
     }
     return rendered("sweep.html", values | dict(words)).encode()
 

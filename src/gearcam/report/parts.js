@@ -87,6 +87,7 @@ class Parts {
     const shape = (right - left) / (top - bottom);
     // a scene that is very flat gets a flatter canvas, with room to zoom
     const flat = Math.min(2.2, Math.max(1.35, shape / 2));
+    this.canvas.style.setProperty("--own", shape); // which paper gives it
     this.canvas.style.setProperty("--shape", Math.min(flat, Math.max(0.8, shape)));
     if (this.fitted) this.fit();
   }

@@ -19,7 +19,7 @@ function column(one) {
     if (value < low) low = value;
     if (value > high) high = value;
   }
-  return { ...one, values, low, high };
+  return { ...one, values, low, high };  // with its label and unit
 }
 
 const all = sweep.columns.map(column);
@@ -27,10 +27,23 @@ const inputs = all.filter((one) => one.input);
 const columns = new Map(all.filter((one) => one.differs).map((one) => [one.name, one]));
 const span = (one) => one.high > one.low ? one.high - one.low : 1;
 const share = (one, value) => one.high > one.low ? (value - one.low) / span(one) : 0.5;
-const shown = (value) => String(Number(value.toPrecision(6)));
+const DIGITS = 5;  // significant
+const shown = (value) => String(Number(value.toPrecision(DIGITS)));
 const word = (one, value) => one.words.length ? one.words[value] ?? "" : shown(value);
+const titled = (one) => one.unit ? `${one.label}, ${one.unit}` : one.label;
+const measure = (one, value) => one.unit ? `${word(one, value)} ${one.unit}` : word(one, value);
 // as a design file has it: inputs have all their digits
 const written = (one, k) => one.words.length ? one.words[one.values[k]] : String(one.values[k]);
+
+/** Return a value for a column of numbers: with the decimals that its largest one needs. */
+function lined(one, k) {
+  const value = one.values[k];
+  if (one.words.length || Number.isNaN(value)) return word(one, value);
+  if (one.values.every((each) => Number.isNaN(each) || Number.isInteger(each))) return String(value);
+  const most = Math.max(Math.abs(one.low), Math.abs(one.high));
+  const decimals = DIGITS - 1 - Math.floor(Math.log10(most));
+  return decimals < 0 || decimals > 8 ? shown(value) : value.toFixed(decimals);
+}
 
 // --- which variants ------------------------------------------------------------------------------
 
@@ -39,7 +52,6 @@ const ranges = new Map();
 const kept = new Uint8Array(count).fill(1);
 let inside = count;
 let chosen = -1;
-let front = [];
 
 // by chance, but the same each time: a regular choice would miss values of a grid
 const order = Uint32Array.from({ length: count }, (_, k) => k);
@@ -73,12 +85,15 @@ let colours = {};
 let tints = [];
 
 function readColours() {
-  const style = getComputedStyle(document.documentElement);
-  for (const name of ["text", "edge", "rule", "line-1", "error", "pitch", "contact", "accent"]) {
+  const root = document.documentElement;
+  const style = getComputedStyle(root);
+  const dark = matchMedia("(prefers-color-scheme: dark)").matches && !root.classList.contains("paper");
+  for (const name of ["text", "muted", "edge", "rule", "line-1", "error", "pitch", "contact", "accent",
+    "ground"]) {
     colours[name] = style.getPropertyValue(`--${name}`).trim();
   }
   // dark to light by hue and lightness, so that it is read without hues too
-  const [from, to] = matchMedia("(prefers-color-scheme: dark)").matches ? [45, 80] : [28, 56];
+  const [from, to] = dark ? [45, 80] : [28, 56];
   tints = Array.from({ length: 33 }, (_, k) =>
     `hsl(${250 - 200 * k / 32} 70% ${from + (to - from) * k / 32}%)`);
 }
@@ -87,7 +102,7 @@ const inkOf = (ink, k) => ink ? tints[Math.round(32 * share(ink, ink.values[k]))
   : colours["line-1"];
 
 function begin(canvas) {
-  const ratio = window.devicePixelRatio || 1;
+  const ratio = document.documentElement.classList.contains("paper") ? 3 : window.devicePixelRatio || 1;
   const { clientWidth: width, clientHeight: height } = canvas;
   canvas.width = width * ratio;
   canvas.height = height * ratio;
@@ -99,20 +114,28 @@ function begin(canvas) {
   return [pen, width, height];
 }
 
+/** Return places on an axis with their texts, in steps of 1, 2 or 5, about `most` of them. */
 function ticks(one, most = 6) {
   const { low, high } = one;
   if (one.words.length) {
     const step = Math.ceil(one.words.length / 12);
-    return Array.from({ length: Math.ceil(one.words.length / step) }, (_, k) => k * step);
+    const places = Array.from({ length: Math.ceil(one.words.length / step) }, (_, k) => k * step);
+    return places.map((value) => [value, one.words[value]]);
   }
   const rough = (high - low) / most;
   const power = 10 ** Math.floor(Math.log10(rough));
   const step = power * [1, 2, 5, 10].find((factor) => factor * power >= rough);
   const first = Math.ceil(low / step);
-  return Array.from({ length: Math.floor(high / step) - first + 1 }, (_, k) => (first + k) * step);
+  const count = Math.floor(high / step) - first + 1;
+  const decimals = Math.max(0, -Math.floor(Math.log10(step * 1.0001)));
+  const plain = decimals < 7 && Math.max(Math.abs(low), Math.abs(high)) < 1e7;
+  return Array.from({ length: count }, (_, k) => {
+    const value = (first + k) * step;
+    return [value, plain ? value.toFixed(decimals) : shown(value)];
+  });
 }
 
-const MARGIN = { left: 64, right: 14, top: 10, bottom: 34 };
+const MARGIN = { left: 78, right: 14, top: 10, bottom: 42 };
 
 /** Return where variants are in a chart; what a refused one does not have is at the edge. */
 function placed(canvas, x, y, margin) {
@@ -152,38 +175,65 @@ function drawVariants(pen, at, size, most) {
       }
     }
   }
-  const ring = (k, name, radius) => {
-    pen.strokeStyle = colours[name];
-    pen.lineWidth = 2;
-    pen.beginPath(); pen.arc(...at(k), radius, 0, 7); pen.stroke();
-  };
-  for (const k of front) if (kept[k]) ring(k, "pitch", 2 + size / 2);
-  if (chosen >= 0) ring(chosen, "contact", 5 + size / 2);
+}
+
+function ring(pen, [a, b], name, radius) {
+  pen.strokeStyle = colours[name];
+  pen.lineWidth = 2;
+  pen.beginPath(); pen.arc(a, b, radius, 0, 7); pen.stroke();
 }
 
 function drawPoints(most = MOST.points) {
   const [pen, width, height] = begin(byId("points"));
-  const { x, y, at, across, up } = places();
+  const plane = places();
+  const { x, y, at, across, up } = plane;
+  const bottom = height - MARGIN.bottom;
+  pen.strokeStyle = colours.rule;
+  pen.fillStyle = colours.muted;
   pen.textAlign = "center";
-  for (const value of ticks(x)) pen.fillText(word(x, value), across(value), height - 18);
-  pen.fillText(x.name, width / 2, height - 3);
+  let last = -Infinity;  // the end of a text, which the next one does not touch
+  for (const [value, text] of ticks(x, width < 500 ? 4 : 6)) {
+    const [place, half] = [across(value), pen.measureText(text).width / 2];
+    pen.beginPath(); pen.moveTo(place, MARGIN.top); pen.lineTo(place, bottom); pen.stroke();
+    if (place - half < last + 6) continue;
+    last = place + half;
+    pen.fillText(text, place, bottom + 16);
+  }
   pen.textAlign = "right";
-  for (const value of ticks(y)) pen.fillText(word(y, value), MARGIN.left - 6, up(value) + 4, 58);
-  pen.strokeRect(MARGIN.left, MARGIN.top, width - MARGIN.left - MARGIN.right,
-    height - MARGIN.top - MARGIN.bottom);
-  drawVariants(pen, at, count > 3000 ? 2 : count > 600 ? 3 : 5, most);
+  for (const [value, text] of ticks(y)) {
+    const level = up(value);
+    pen.beginPath(); pen.moveTo(MARGIN.left, level); pen.lineTo(width - MARGIN.right, level); pen.stroke();
+    pen.fillText(text, MARGIN.left - 6, level + 4, MARGIN.left - 26);
+  }
+  pen.strokeStyle = colours.edge;
+  pen.strokeRect(MARGIN.left, MARGIN.top, width - MARGIN.left - MARGIN.right, bottom - MARGIN.top);
+  pen.fillStyle = colours.text;
+  pen.textAlign = "center";
+  pen.fillText(titled(x), (MARGIN.left + width - MARGIN.right) / 2, height - 6,
+    width - MARGIN.left - MARGIN.right);
+  pen.save();
+  pen.translate(12, (MARGIN.top + bottom) / 2);
+  pen.rotate(-Math.PI / 2);
+  pen.fillText(titled(y), 0, 0, bottom - MARGIN.top);
+  pen.restore();
+  const size = count > 3000 ? 2 : count > 600 ? 3 : 5;
+  drawVariants(pen, at, size, most);
+  drawFront(pen, plane, size);
+  if (chosen >= 0) ring(pen, at(chosen), "contact", 8 + size / 2);
+  nameBest(pen, plane, width);
   const ink = axis("ink");
   byId("shown").textContent = [
     `${inside} of ${count} variants are kept${inside > MOST.points ? `, ${MOST.points} are drawn` : ""}.`,
     sweep.reasons.length ? "× refused, at the edge where they have no fact." : "",
     sweep.errors.some(Boolean) ? "/ with errors." : "",
-    ink ? `Colour: ${ink.name}, ${word(ink, ink.low)} dark to ${word(ink, ink.high)} light.` : "",
+    front.length > 1 ? "Ringed: no other one is better in all goals." : "",
+    ink ? `Colour: ${titled(ink)}, from ${word(ink, ink.low)} dark to ${word(ink, ink.high)} light.` : "",
   ].filter(Boolean).join(" ");
 }
 
 const picked = () => [...document.querySelectorAll("#choice input:checked")]
   .map((box) => columns.get(box.value));
-const AXIS = { top: 60, bottom: 36, least: 96 };  // room for labels and ends of ranges, pixels
+const AXIS = { top: 74, bottom: 36, least: 110 };  // room for labels and ends of ranges, pixels
 
 function drawAxes(most = MOST.lines) {
   const [pen, width, height] = begin(byId("axes"));
@@ -223,11 +273,13 @@ function drawAxis(pen, one, x, step, height, place) {
   pen.beginPath(); pen.moveTo(x, AXIS.top); pen.lineTo(x, height - AXIS.bottom); pen.stroke();
   pen.textAlign = "center";
   const lines = [""];
-  for (const part of one.name.split(/(?<=[._ ])/)) {
+  for (const part of titled(one).split(/(?<= )/)) {
     if (pen.measureText(lines.at(-1) + part).width > step - 8 && lines.at(-1)) lines.push("");
     lines[lines.length - 1] += part;
   }
-  lines.slice(-2).forEach((line, row) => pen.fillText(line, x, 12 + 14 * row, step - 6));
+  lines.slice(0, 3).forEach((line, row) => {
+    pen.fillText(row === 2 && lines.length > 3 ? `${line.trim()} …` : line.trim(), x, 12 + 14 * row, step - 6);
+  });
   pen.fillText(word(one, one.high), x, AXIS.top - 17, step - 6);
   pen.fillText(word(one, one.low), x, height - AXIS.bottom + 26, step - 6);
   if (!ranges.has(one.name)) return;
@@ -261,7 +313,7 @@ function makeEnds() {
     element.style.left = `${100 * (number + 0.5) / axes.length}%`;
     element.setAttribute("role", "slider");
     element.setAttribute("aria-orientation", "vertical");
-    element.setAttribute("aria-label", `${fact.name}, at ${end ? "most" : "least"}`);
+    element.setAttribute("aria-label", `${titled(fact)}, at ${end ? "most" : "least"}`);
     return element;
   })));
 }
@@ -271,14 +323,14 @@ const SMALL = { left: 4, right: 4, top: 4, bottom: 4 };
 /** Make the small charts and the distributions of what is picked. */
 function makeCharts() {
   makeEnds();
-  const figure = (one) => made("figure", {}, made("figcaption", { textContent: one.name }),
+  const figure = (one) => made("figure", {}, made("figcaption", { textContent: titled(one) }),
     made("canvas"), made("small"));
-  byId("over").textContent = axis("x").name;
+  byId("over").textContent = axis("x").label;
   byId("spreads").replaceChildren(...picked().filter((one) => !one.words.length).map((one) =>
     Object.assign(figure(one), { fact: one })));
   byId("smalls").replaceChildren(...picked().filter((one) => one !== axis("x")).map((one) => {
     const chart = Object.assign(figure(one), { fact: one });
-    chart.querySelector("small").textContent = `${word(one, one.low)} to ${word(one, one.high)}`;
+    chart.querySelector("small").textContent = `${word(one, one.low)} to ${measure(one, one.high)}`;
     const canvas = chart.querySelector("canvas");
     canvas.onclick = (event) => pick(event, placed(canvas, axis("x"), one, SMALL));
     return chart;
@@ -290,7 +342,11 @@ function drawSmalls(most = MOST.small) {
     const canvas = chart.querySelector("canvas");
     const [pen, width, height] = begin(canvas);
     pen.strokeRect(0.5, 0.5, width - 1, height - 1);
-    drawVariants(pen, placed(canvas, axis("x"), chart.fact, SMALL).at, count > 600 ? 2 : 4, most);
+    const plane = placed(canvas, axis("x"), chart.fact, SMALL);
+    const size = count > 600 ? 2 : 4;
+    drawVariants(pen, plane.at, size, most);
+    drawFront(pen, plane, size);
+    if (chosen >= 0) ring(pen, plane.at(chosen), "contact", 5 + size / 2);
   }
 }
 
@@ -329,15 +385,17 @@ function drawSpreads() {
 
 let waiting = 0;
 
+function paint() {
+  waiting = 0;
+  filter();
+  if (!drag) findFront();
+  drawPoints(drag ? 3000 : undefined);
+  drawAxes(drag ? 500 : undefined);
+  if (!drag || count <= MOST.lines) drawSpreads();
+  if (!drag) drawSmalls();
+}
+
 /** Draw all once before the next picture; fewer variants while a range is dragged. */
 function draw() {
-  waiting ||= requestAnimationFrame(() => {
-    waiting = 0;
-    filter();
-    if (!drag) findFront();
-    drawPoints(drag ? 3000 : undefined);
-    drawAxes(drag ? 500 : undefined);
-    if (!drag || count <= MOST.lines) drawSpreads();
-    if (!drag) drawSmalls();
-  });
+  waiting ||= requestAnimationFrame(paint);
 }

@@ -1,77 +1,30 @@
 "use strict";
-// What is done on the page of a sweep: goals, a variant that is picked, ranges that are dragged.
-
-// --- the best ------------------------------------------------------------------------------------
-
-const MOST_ROWS = 200;
-
-function surpassing(goals) {
-  const rows = [];
-  for (let k = 0; k < count; k += 1) {
-    if (!kept[k] || sweep.errors[k]) continue;
-    const values = goals.map(([one, sign]) => sign * one.values[k]);
-    if (values.every(Number.isFinite)) rows.push([k, values]);
-  }
-  rows.sort(([, a], [, b]) => {
-    const j = a.findIndex((one, place) => one !== b[place]);
-    return j < 0 ? 0 : a[j] - b[j];
-  });
-  const best = [];  // sorted, so that a later row never surpasses an earlier one
-  for (const [k, values] of rows) {
-    const beaten = best.some(([, other]) => other.every((one, j) => one <= values[j])
-      && other.some((one, j) => one < values[j]));
-    if (!beaten) best.push([k, values]);
-  }
-  return best.map(([k]) => k);
-}
-
-function findFront() {
-  const goals = [...document.querySelectorAll("#goals select")].filter((one) => one.value)
-    .map((one) => [columns.get(one.name), Number(one.value)]);
-  front = goals.length ? surpassing(goals) : [];
-  const heads = [...inputs, ...goals.map(([one]) => one)];
-  const rows = front.slice(0, MOST_ROWS).map((k) => made("tr", {
-    tabIndex: 0, onclick: () => choose(k),
-    onkeydown: (event) => { if (event.key === "Enter") choose(k); },
-  }, ...[sweep.numbers[k], ...heads.map((one) => one.input ? written(one, k) : shown(one.values[k]))]
-    .map((textContent) => made("td", { textContent }))));
-  const more = front.length > MOST_ROWS ? `, the first ${MOST_ROWS} are listed` : "";
-  byId("front").replaceChildren(...(rows.length ? [
-    made("p", { textContent: `${front.length} of ${inside}${more}` }),
-    made("table", {}, made("tr", {}, ...["variant", ...heads.map((one) => one.name)]
-      .map((textContent) => made("th", { textContent }))), ...rows)] : []));
-}
+// What is done on the page of a sweep: a variant that is picked, ranges that are dragged.
 
 // --- one variant -----------------------------------------------------------------------------------
-
-function file(k) {
-  const name = `${sweep.name.slice(0, 80)}_${sweep.numbers[k]}`;
-  const text = sweep.file.replace(/"@@(name|\d+)@@"/g, (_, mark) =>
-    mark === "name" ? JSON.stringify(name) : written(inputs[mark], k));
-  return [name, text];
-}
 
 function choose(k) {
   chosen = k;
   byId("number").value = sweep.numbers[k];
   const [name, text] = file(k);
-  const table = (pairs) => made("table", {}, ...pairs.map((pair) =>
-    made("tr", {}, ...pair.map((textContent) => made("td", { textContent })))));
+  const table = (pairs) => made("table", {}, ...pairs.map(([one, value]) => made("tr", {},
+    made("td", { textContent: one.label, title: one.name }), made("td", { className: "number", textContent: value }),
+    made("td", { textContent: one.unit }))));
   const facts = [...columns.values()].filter((one) => !one.input && !Number.isNaN(one.values[k]));
-  const words = sweep.reasons[sweep.refused[k]] ? `refused, ${sweep.reasons[sweep.refused[k]]}`
-    : sweep.findings[sweep.found[k]] ?? "no findings";
-  const link = made("a", {
-    textContent: `Save ${name}.toml`, download: `${name}.toml`,
-    href: URL.createObjectURL(new Blob([text], { type: "application/toml" })),
-  });
+  const told = sweep.reasons[sweep.refused[k]] ? `refused, ${sweep.reasons[sweep.refused[k]]}`
+    : sweep.findings[sweep.found[k]]?.replaceAll(" ", ", ") ?? "no findings";
+  const link = linkTo(k);
+  link.textContent = `Save ${name}.toml`;
   const copy = made("button", { type: "button", textContent: "Copy",
     onclick: async () => { await navigator.clipboard.writeText(text); copy.textContent = "Copied"; } });
   byId("variant").replaceChildren(
-    made("p", {}, made("strong", { textContent: `Variant ${sweep.numbers[k]}` }), `: ${words}`),
-    table(inputs.map((one) => [one.name, written(one, k)])),
-    made("div", { className: "facts" }, table(facts.map((one) => [one.name, word(one, one.values[k])]))),
+    made("p", {}, made("strong", { textContent: `Variant ${sweep.numbers[k]}` }),
+      `${names.has(k) ? `, ${names.get(k)}` : ""}: ${told}`),
+    ...pictureOf(k),
+    table(inputs.map((one) => [one, lined(one, k)])),
+    made("div", { className: "facts" }, table(facts.map((one) => [one, lined(one, k)]))),
     made("p", {}, link, " ", copy, " then ", made("code", { textContent: `gearcam build ${name}.toml` })),
-    made("pre", { textContent: text }));
+    made("details", {}, made("summary", { textContent: "The file" }), made("pre", { textContent: text })));
   if (columns.size) draw();
 }
 
@@ -156,7 +109,7 @@ function press(event) {
 
 function start() {
   const redraw = () => { makeCharts(); draw(); };
-  const option = (one) => made("option", { value: one.name, textContent: one.name });
+  const option = (one) => made("option", { value: one.name, textContent: titled(one) });
   for (const id of ["x", "y", "ink"]) {
     byId(id).append(...(id === "ink" ? [made("option", { value: "", textContent: "none" })] : []),
       ...[...columns.values()].map(option));
@@ -166,13 +119,14 @@ function start() {
   for (const one of columns.values()) {
     byId("choice").append(made("label", {}, made("input", {
       type: "checkbox", value: one.name, checked: sweep.picked.includes(one.name), onchange: redraw,
-    }), one.name));
+    }), made("span", { title: one.name, textContent: titled(one) })));
     if (one.input || one.words.length) continue;
     const select = made("select", { name: one.name, onchange: draw },
       ...[["", "–"], ["1", "small"], ["-1", "large"]].map(
         ([value, textContent]) => made("option", { value, textContent })));
     select.value = sweep.goals[one.name] ?? "";
-    byId("goals").append(made("label", {}, select, one.name));
+    byId("goals").append(made("label", {}, select,
+      made("span", { title: one.name, textContent: titled(one) })));
   }
   byId("wanted").open = !Object.keys(sweep.goals).length;
   byId("points").addEventListener("click", (event) => pick(event, places()));
@@ -183,8 +137,19 @@ function start() {
   byId("all").onclick = () => { ranges.clear(); draw(); };
   window.addEventListener("resize", draw);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { readColours(); draw(); });
+  for (const [name, on] of [["beforeprint", true], ["afterprint", false]]) {
+    window.addEventListener(name, () => {
+      document.documentElement.classList.toggle("paper", on);
+      readColours();
+      paint();
+    });
+  }
   readColours();
+  showSome();
   redraw();
+  findFront();
+  const best = [...names.keys()].at(-1) ?? Number(Object.keys(sweep.pictures)[0] ?? -1);
+  if (best >= 0) choose(best);
 }
 
 byId("number").onchange = () => {

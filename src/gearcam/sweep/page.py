@@ -1,8 +1,9 @@
 """The page of a sweep: every variant in linked charts, and its design file at a click.
 
-The page holds the columns of values and facts that differ, and the text of a design file in which
-the values of a variant are put. So it needs nothing but itself, whatever the number of variants.
-Rows are read once, one by one.
+The page holds the columns of values and facts that differ, the text of a design file in which the
+values of a variant are put, and small pictures of the best variants, or of some if there are no
+goals. So it needs nothing but itself, whatever the number of variants. Rows are read once, one by
+one.
 """
 
 from __future__ import annotations
@@ -17,11 +18,15 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearcam.base.facts import text_of
+from gearcam.base.facts import Facts, text_of
 from gearcam.designs.design import Design, path_of
 from gearcam.designs.writing import least_document, toml_text, value_text
+from gearcam.pictures.scenes import Scene
 from gearcam.report.page import sweep_page
+from gearcam.results.result import Result
 from gearcam.sweep.rows import Built
+from gearcam.sweep.small_pictures import PLACES, pictures
+from gearcam.sweep.words import labels
 
 PAGE: Final = "sweep.html"
 """Name of the file."""
@@ -34,6 +39,12 @@ _REASONS: Final = 20
 
 _NUMBER: Final = re.compile(r"(?<![\w.])[-+]?\d+(\.\d+)?([eE][-+]?\d+)?")
 """A number in a reason: reasons that differ in nothing else are counted together."""
+
+_MARK: Final = re.compile(r'"@@(\w+)@@"')
+"""The place of a value in the text of a design file."""
+
+_PICTURED: Final = 12
+"""Largest number of pictures: each variant that has one is built again."""
 
 _SHARES: Final = (5, 50, 95)
 """Percentiles of the time that are told."""
@@ -86,6 +97,16 @@ class _Column:
             column["value"] = words[0] if words else text_of(float(there[0]))
         return column | {"data": base64.b64encode(data.tobytes()).decode()}
 
+    def written(self, place: int) -> str:
+        """Return the value of a row as a design file has it."""
+        number = self._numbers[place]
+        whole = math.isfinite(number) and number.is_integer()
+        return self._texts.get(place) or value_text(int(number) if whole else number)
+
+    def value(self, place: int) -> float:
+        """Return the number of a row, nan of one without."""
+        return self._numbers[place] if place < len(self._numbers) else math.nan
+
     def _text(self, place: int) -> str:
         number = self._numbers[place]
         return self._texts.get(place) or ("" if math.isnan(number) else value_text(number))
@@ -119,6 +140,25 @@ class _Rows:
         """Return the columns: keys, then facts."""
         columns = [one.content(len(self.numbers)) for one in self.columns.values()]
         return sorted(columns, key=lambda one: not one["input"])
+
+    def best(self, goals: Mapping[str, float]) -> list[int]:
+        """Return the places of the rows that none surpasses in all goals, by the first of them."""
+        columns = [(self.columns[name], sign) for name, sign in goals.items()]
+        good = [
+            (values, place)
+            for place, (refused, errors) in enumerate(zip(self.refused, self.errors, strict=True))
+            if refused < 0 and not errors
+            for values in [tuple(sign * one.value(place) for one, sign in columns)]
+            if all(map(math.isfinite, values))
+        ]
+        front = list[tuple[tuple[float, ...], int]]()
+        for values, place in sorted(good):  # a later one never surpasses an earlier one
+            if not any(
+                other != values and all(a <= b for a, b in zip(other, values, strict=True))
+                for other, _ in front
+            ):
+                front.append((values, place))
+        return [place for _, place in front]
 
     def counted(self) -> list[tuple[str, int]]:
         """Return reasons with their numbers, the most frequent first."""
@@ -172,7 +212,15 @@ def page(
     keys = [one["name"] for one in columns if one["input"]]
     inputs = [one["name"] for one in varied if one["input"]]
     facts = [one["name"] for one in varied if not one["input"] and not one["words"]]
-    first = _shown(base, set(facts)) or facts or inputs
+    sought = [name for name in goals or {} if name in facts]
+    text = file_text(base, keys)
+    scenes = _scenes(known, text, keys, {name: (goals or {})[name] for name in sought})
+    given = _result(base)
+    words = labels(given.facts if given else Facts({}), [one["name"] for one in columns])
+    for one in columns:
+        one["label"], one["unit"] = words[one["name"]]
+    first = _leading(given, set(facts)) or facts or inputs
+    plane = sought if len(sought) > 1 else [*inputs[:1], *sought, *first]
     content = {
         "name": base.name,
         "numbers": list(known.numbers),
@@ -182,35 +230,80 @@ def page(
         "errors": list(known.errors),
         "found": list(known.found),
         "findings": list(known.findings),
-        "file": file_text(base, keys),
+        "file": text,
+        "pictures": pictures(scenes),
         "goals": {name: str(round(sign)) for name, sign in (goals or {}).items()},
         "picked": list(dict.fromkeys([*inputs, *(goals or {}), *first]))[:_PICKED],
-        "x": (inputs or first or [""])[0],
-        "y": next((name for name in [*(goals or {}), *first] if name in facts), (first or [""])[0]),
-        "ink": inputs[1] if len(inputs) > 1 else "",
+        "x": (plane or [""])[0],
+        "y": next((one for one in plane[1:] if one in facts), (plane or [""])[-1]),
+        "ink": next((one for one in inputs if one not in plane[:1]), ""),
     }
-    constant = [f"{one['name']} = {one['value']}" for one in columns if "value" in one]
+    constant = [
+        f"{one['label']} = {one['value']} {one['unit']}".rstrip()
+        for one in columns
+        if "value" in one
+    ]
     count = len(known.numbers)
     return sweep_page(
         f"{base.name}, {count} variant{'s' if count > 1 else ''}",
-        {"lines": [*lines, known.time()], "reasons": known.counted(), "constant": constant},
+        {
+            "lines": [*lines, known.time()],
+            "reasons": known.counted(),
+            "constant": constant,
+            "sought": bool(sought),
+        },
         content,
     )
 
 
-def _shown(base: Design, known: set[str]) -> list[str]:
-    """Return the names of facts that are always shown, as far as they differ; of studies first."""
+def _result(design: Design) -> Result | None:
+    """Return the result of a design; None if it cannot be made, as the one that is varied may."""
     from gearcam import build
     from gearcam.base.errors import GearcamError
 
     try:
-        result = build(base)
-        leading = [one.name for one in result.facts.leading()]
-        studies = tuple(f"{one.study.key}." for one in result.studies.values())
-    except GearcamError:  # the design that is varied need not be possible itself
+        result = build(design)
+        return result if result.facts else None
+    except GearcamError:
+        return None
+
+
+def _leading(result: Result | None, known: set[str]) -> list[str]:
+    """Return the names of facts that are always shown, as far as they differ; of studies first."""
+    if result is None:
         return []
+    leading = [one.name for one in result.facts.leading()]
+    studies = tuple(f"{one.study.key}." for one in result.studies.values())
     leading.sort(key=lambda name: not name.startswith(studies))
     return [name for one in leading for name in (one, f"{one}.max", f"{one}.min") if name in known]
+
+
+def _scenes(
+    rows: _Rows, text: str, keys: Sequence[str], goals: Mapping[str, float]
+) -> dict[int, Scene]:
+    """Return scenes of some variants by their places: of the best, or of some that can be made."""
+    from gearcam import build, loads
+    from gearcam.base.errors import GearcamError
+
+    made = [place for place, reason in enumerate(rows.refused) if reason < 0]
+    places = rows.best(goals) if goals else made
+    some = np.linspace(0, len(places) - 1, min(len(places), _PICTURED)).round().astype(int)
+    found = dict[int, Scene]()
+    for place in (places[k] for k in some.tolist()):
+        values = [rows.columns[key].written(place) for key in keys]
+        try:
+            scene = build(loads(_filled(text, values))).scene(PLACES)
+        except GearcamError:  # a table of the design may have gone
+            continue
+        if scene is not None:
+            found[place] = scene
+    return found
+
+
+def _filled(text: str, values: Sequence[str]) -> str:
+    """Return the text of a design file with values, as written there, in the places of marks."""
+    marks = {str(k): value for k, value in enumerate(values)} | {"name": value_text("variant")}
+    return _MARK.sub(lambda found: marks[found[1]], text)
 
 
 def file_text(base: Design, keys: Sequence[str]) -> str:

@@ -174,4 +174,4 @@ def test_goals_are_set_before() -> None:
     rows = [Built(number=k, values={"a": k}, facts={"b": float(k), "c": -k}) for k in range(3)]
     content = held(page(BASE, rows, [], {"b": 1.0, "c": -1.0}))
     assert content["goals"] == {"b": "1", "c": "-1"}
-    assert content["y"] == "b"
+    assert (content["x"], content["y"]) == ("b", "c")
