@@ -118,6 +118,12 @@ class Design:
                     return () if name in kind.several else kind.tables[name]()
             raise AttributeError(f"{type(self).__name__} has no {name}", name=name, obj=self)
 
+    def __dir__(self) -> Iterable[str]:
+        """Return the tables of the design and what it can do."""
+        tables = {one.name for one in fields(self)} - {"added"}
+        names = {"kind", "to_dict", "with_", *tables, *self.added}
+        return [*(one for one in super().__dir__() if one.startswith("_")), *sorted(names)]
+
     def __eq__(self, other: object) -> bool:
         """Return whether another design has the same kind and values, regardless of its source."""
         if not isinstance(other, Design) or type(self) is not type(other):
@@ -184,6 +190,13 @@ class Design:
         ------
         DesignError
             If the design contains a Python function, which a file cannot.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> document = gc.load("profiles/ellipse.toml").to_dict()
+        >>> document["pair"]["teeth"]
+        [41, 41]
         """
         document = document_of(self)
         _demand(
@@ -212,6 +225,13 @@ class Design:
         ------
         DesignError
             If there is no such key, or a value is not allowed.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> design = gc.load("profiles/ellipse.toml").with_({"law.eccentricity": 0.2})
+        >>> design.law.eccentricity, round(gc.build(design).facts["pair.ratio"]["max"], 6)
+        (0.2, 1.5)
         """
         document, rule = document_of(self), "a mapping of dotted keys to values"
         for key, value in instance("changes", changes, Mapping, rule).items():

@@ -30,6 +30,8 @@ class Staged(NotebookView):
         Accuracy of the internal computations.
     """
 
+    for_users = ("design",)
+
     def __init__(self, design: Any, tolerances: Tolerances = DEFAULT) -> None:
         self.design = design
         self.tolerances = tolerances
