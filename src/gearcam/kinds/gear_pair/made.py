@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Final, TypeAlias
 
@@ -73,7 +74,8 @@ class MadePair(PartsResult):
         with self.stage("law"), self.rows.named():
             if not is_open(parameters):
                 demand_ring(pair)
-            law = parameters.build(lobes_of(pair), self.tolerances)
+            built = parameters.build(lobes_of(pair), self.tolerances)
+            law = replace(built, name=self.design.law_type)
             _demand_reached(self.design.output.pose, law)
         return law
 
