@@ -147,7 +147,7 @@ def load(path: str | os.PathLike[str]) -> Design:
     Parameters
     ----------
     path : path
-        A TOML file.
+        A TOML file; ``-`` is the standard input.
 
     Returns
     -------

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 
 
 def key_of(keys: Mapping[str, str], name: str) -> str:
-    """Return the key that the fact called `name` repeats; the name itself if it is none."""
+    """Return the key that the fact `name` repeats, of `keys` by facts; else the name itself."""
     for fact, key in keys.items():
         if name == fact or name.startswith(f"{fact}."):
             return key + name[len(fact) :]
@@ -18,5 +18,5 @@ def key_of(keys: Mapping[str, str], name: str) -> str:
 
 
 def fact_of(keys: Mapping[str, str], name: str) -> str:
-    """Return the fact that repeats the key called `name`; the name itself if none does."""
+    """Return the fact that repeats the key `name`, of `keys` by facts; else the name itself."""
     return key_of({key: fact for fact, key in keys.items()}, name)

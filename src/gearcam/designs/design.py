@@ -31,7 +31,14 @@ from gearcam.designs.kind import KINDS
 from gearcam.designs.lines import Path
 from gearcam.designs.nodes import Wanted, tables_in, wanted, written
 from gearcam.designs.outputs import OutputSpec
-from gearcam.designs.reader import content_of, decoded, document_in, problems_of
+from gearcam.designs.reader import (
+    STDIN,
+    STDIN_NAME,
+    content_of,
+    decoded,
+    document_in,
+    problems_of,
+)
 from gearcam.designs.table import settled
 from gearcam.numeric.arguments import instance
 
@@ -480,7 +487,7 @@ def load(path: str | os.PathLike[str]) -> Design:
     Parameters
     ----------
     path : path
-        A TOML file in UTF-8.
+        A TOML file in UTF-8; ``-`` is the standard input.
 
     Returns
     -------
@@ -493,7 +500,8 @@ def load(path: str | os.PathLike[str]) -> Design:
         If the file cannot be read, or with all mistakes in it, each with its line.
     """
     file = os.fspath(path)
-    return loads(decoded(content_of(file), file), file=file)
+    name = STDIN_NAME if file == STDIN else file
+    return loads(decoded(content_of(file), name), file=name)
 
 
 def loads(text: str, *, file: str = "") -> Design:
