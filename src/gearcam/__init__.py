@@ -1,13 +1,73 @@
 """gearcam: cams and pairs of non-circular gears from a description of their motion.
 
-    design = gearcam.load("profiles/nail_machine_two_phase.toml")
-    result = gearcam.build(design)
-    result.pair.module, result.findings, result.gear1.outline
-    result.write("output", files=["dxf"])
-    gearcam.remedies(result).found  # changes that make a failing design work
+A *design* describes a motion and what makes it; `build` makes its *result*; the result has numbers,
+findings, outlines, charts and files. In Python lengths are in mm and angles in rad; names that end
+in a unit, and keys of design files, have that unit.
 
-Importing the package is fast: modules are loaded when they are needed. Classes of designs and of
-their parts are attributes too; ``dir(gearcam)`` lists all names.
+A design comes from a file (`load`), from the text of one (`loads`), from a dictionary with the same
+keys (`design`), or from classes for each kind of design and its parts:
+
+>>> import gearcam as gc
+>>> design = gc.load("profiles/ellipse.toml")
+>>> same = gc.design(
+...     {
+...         "kind": "gear-pair",
+...         "name": "ellipse",
+...         "law": {"type": "ellipse", "eccentricity": 0.3},
+...         "pair": {"teeth": [41, 41], "module_mm": 1},
+...     }
+... )
+>>> law = gc.laws.Ellipse(eccentricity=0.3)
+>>> pair = gc.PairSpec(teeth=(41, 41), module=1.0)
+>>> again = gc.GearPairDesign(name="ellipse", law=law, pair=pair)
+>>> result = gc.build(design)  # nothing is computed until it is asked for
+
+*Numbers and findings.* `result.facts` has all numbers by name; `print(result.facts)` shows those
+that matter. A finding tells what a check has found; errors mean: do not cut.
+
+>>> round(result.facts["pair.center_distance_mm"], 4)
+41.9607
+>>> [(one.severity, one.code) for one in result.findings]
+[('note', 'no-backlash')]
+
+*Tables, outlines and charts.* Tables are columns for numpy, pandas and polars.
+
+>>> result.motion([0.0, 1.0])["ratio"].round(4)  # at these angles of the driver, rad
+array([0.5385, 0.6435])
+>>> x, y = result.gear1.outline.T  # mm, the shaft at (0, 0)
+>>> result.charts[:3]  # result.plot("ratio") draws one with matplotlib
+('ratio', 'pressure_angle', 'contact_ratio')
+
+*Files* of all formats, or of those that you name:
+
+>>> result.write("output", files=["dxf"]).files
+('gear1.dxf', 'gear2.dxf', 'pair.dxf', 'summary.json')
+
+*Studies* look at a result more closely: meshing, errors of mounting, forces, stress and others.
+Their settings are the keys of their table in a design file.
+
+>>> study = result.mesh(steps=36, center_distance_mm=42.0)
+>>> round(study.facts["meshing.backlash_mm"]["min"], 4)
+0.0287
+
+*Variants.* `with_` returns a changed, checked copy of a design; `record` is one row of a data
+frame. The command ``gearcam sweep`` builds thousands, ``gearcam optimize`` searches the best.
+
+>>> tried = [design.with_({"law.eccentricity": one}) for one in (0.1, 0.3)]
+>>> [round(gc.build(one).record()["pair.ratio.max"], 3) for one in tried]
+[1.222, 1.857]
+
+*What goes wrong* is told at once: `DesignError` lists the mistakes in a design, `InfeasibleError`
+tells why it cannot be made and the nearest value that can; `remedies` searches for changes that
+make it work.
+
+Where to go on: ``dir(gearcam)`` lists the classes and functions, ``dir(gearcam.laws)`` the ratio
+laws of gears, ``dir(gearcam.motion_laws)`` the motion laws of cams, ``dir(result)`` and
+``dir(study)`` what these have; ``help`` of each shows an example. ``gearcam --help`` in a shell
+lists the commands, ``gearcam new gear-pair my.toml`` writes a design file to start from, and
+``gearcam skill`` writes a page on design files for coding assistants.
+
+Importing the package is fast: modules are loaded when they are needed.
 """
 
 from __future__ import annotations
@@ -87,7 +147,7 @@ def load(path: str | os.PathLike[str]) -> Design:
     Parameters
     ----------
     path : path
-        A TOML file.
+        A TOML file; ``-`` is the standard input.
 
     Returns
     -------

@@ -18,8 +18,8 @@ from gearcam.base.errors import WriteError
 from gearcam.base.interrupts import interruptible
 from gearcam.base.kinds import kind_names, kind_studies
 from gearcam.base.registry import deferred
-from gearcam.commands import EXIT_CODES, GOOD, WRONG, Command, fault, interrupted, refuse
-from gearcam.console import DEBUG, complain, quieten, say, streams
+from gearcam.commands import EXIT_CODES, GOOD, WRONG, Command, Options, fault, interrupted, refuse
+from gearcam.console import DEBUG, complain, quieten, say, streams, talking
 
 if TYPE_CHECKING:
     from gearcam.results.studies import Study
@@ -69,7 +69,9 @@ def _dispatch(words: list[str]) -> int:
     word = words[0] if words else ""
     command = _command(word)
     if command is not None:
-        return command.run(vars(_parser(command).parse_intermixed_args(words[1:])))
+        options = vars(_parser(command).parse_intermixed_args(words[1:]))
+        with talking(quiet=options.get("quiet", False), aside=options.get("json", False)):
+            return command.run(options)
     top = _Top(
         prog="gearcam", description=_ABOUT, formatter_class=argparse.RawDescriptionHelpFormatter
     )
@@ -121,6 +123,28 @@ def _study_command(study: Study) -> Command:
 def parsers() -> Iterator[argparse.ArgumentParser]:
     """Yield the argument parser of every command; its description says what the command does."""
     return map(_parser, _commands())
+
+
+def _completion(options: Options) -> int:
+    """Print the script of a shell, with the words of all parsers."""
+    from gearcam.completion import script
+
+    say(script(options["shell"], parsers()))
+    return GOOD
+
+
+def _skill(options: Options) -> int:
+    """Write the page for coding assistants."""
+    from gearcam.export.write import write_new
+    from gearcam.skill import page
+
+    text = page(EXIT_CODES.items(), ((one.name, one.doc) for one in _commands()))
+    if options["file"] is None:
+        say(text.rstrip("\n"))
+        return GOOD
+    write_new(options["file"], text)
+    say(f"{options['file']}: written")
+    return GOOD
 
 
 class _Help(argparse.HelpFormatter):
@@ -212,5 +236,17 @@ _COMMANDS: Final = (
         "schema",
         "Print the JSON Schema of design files, for use in editors.",
         deferred(f"{_GENERAL}:schema"),
+    ),
+    Command(
+        "completion",
+        "Print the script that completes commands and options in bash, zsh or fish.",
+        _completion,
+        deferred(f"{_GENERAL}:completion_options"),
+    ),
+    Command(
+        "skill",
+        "Write a page for coding assistants: design files, refusals, worked examples.",
+        _skill,
+        deferred(f"{_GENERAL}:skill_options"),
     ),
 )

@@ -6,10 +6,11 @@ Given several files, a command works on all of them and returns the largest code
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import textwrap
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, NoReturn
 
@@ -18,6 +19,7 @@ from gearcam.base.errors import DesignError, InfeasibleError, MissingExtraError,
 from gearcam.console import (
     DEBUG,
     all_lines,
+    answer,
     complain,
     fault_text,
     problem_text,
@@ -77,7 +79,20 @@ def add_output(parser: argparse.ArgumentParser) -> None:
     """Add the options of commands that write into an output folder to a `parser`."""
     words = "output folder (default: output)"
     parser.add_argument("-o", "--output", metavar="DIR", default="output", help=words)
+    words = "print errors only"
+    parser.add_argument("-q", "--quiet", action="store_true", help=words)
     parser.add_argument("--debug", action="store_true", help=f"show tracebacks (or set {DEBUG})")
+
+
+def add_summary(parser: argparse.ArgumentParser) -> None:
+    """Add the option to print the summary for programs to a `parser`."""
+    words = "print summary.json to stdout, a line for each design, and all else to stderr"
+    parser.add_argument("--json", action="store_true", help=words)
+
+
+def suggest(action: argparse.Action, words: Callable[[], Iterable[str]]) -> None:
+    """Note `words` that shells complete for an `action`, an argument that may take others too."""
+    vars(action)["suggested"] = words
 
 
 def refuse(problems: Sequence[Problem]) -> NoReturn:
@@ -100,6 +115,7 @@ def each_result(
     action: Action,
     *,
     debug: bool,
+    as_json: bool = False,
 ) -> int:
     """Run an action on the result of every file.
 
@@ -115,6 +131,8 @@ def each_result(
         ``action(result, progress)`` writes files of a result.
     debug : bool
         Whether to print tracebacks of bugs.
+    as_json : bool
+        Whether to print the summary of each as a line for programs.
 
     Returns
     -------
@@ -123,6 +141,12 @@ def each_result(
     """
     names: dict[str, str] = {}
 
+    def telling(result: Result, progress: Progress | None) -> BuildOutput:
+        written = action(result, progress)
+        if as_json:
+            answer(json.dumps(written.summary, ensure_ascii=False))
+        return written
+
     def work(file: str) -> int:
         start = time.perf_counter()
         design = read(file)
@@ -130,7 +154,7 @@ def each_result(
         if before != file:  # its files would be overwritten
             message = f'the design of {before} has the same name, "{design.name}"'
             raise DesignError([Problem(message, file=file, key="name", value=design.name)])
-        return _act(build(design), file, done, action, start)
+        return _act(build(design), named(file), done, telling, start)
 
     return each(files, done, work, debug=debug)
 
@@ -189,17 +213,24 @@ def each(
         except KeyboardInterrupt:
             return interrupted()
         except DesignError as error:
-            complain(refusal_text(error, file, done))
+            complain(refusal_text(error, named(file), done))
             codes.append(WRONG)
         except (WriteError, MissingExtraError) as error:
-            complain(f"{file}: {error}")
+            complain(f"{named(file)}: {error}")
             codes.append(WRONG)
         except Exception as error:
-            codes.append(fault(error, file=file, debug=debug))
+            codes.append(fault(error, file=named(file), debug=debug))
     if len(files) > 1:
         count = sum(code in (GOOD, FINDINGS) for code in codes)
         say(f"{len(files)} files: {count} {done}, {len(files) - count} refused")
     return max(codes, default=GOOD)
+
+
+def named(file: str) -> str:
+    """Return what a `file` of the command line is called in messages."""
+    from gearcam.designs.reader import STDIN, STDIN_NAME
+
+    return STDIN_NAME if file == STDIN else file
 
 
 def fault(error: Exception, *, file: str = "", debug: bool = False) -> int:

@@ -1,6 +1,7 @@
 """Output of the command line: aligned tables, file sizes, error messages, a progress bar.
 
-Results go to stdout, errors to stderr; output into a pipe or file is plain text.
+Results go to stdout, errors to stderr; output into a pipe or file is plain text. Where a command
+answers a program (``--json``), only this goes to stdout, and what people read to stderr.
 """
 
 from __future__ import annotations
@@ -171,8 +172,8 @@ def wrapped(text: str, *, first: str = "    ", rest: str = "    ") -> str:
 
 @contextlib.contextmanager
 def progress_bar(file: str) -> Iterator[Callable[[str, int, int], None] | None]:
-    """Draw a progress bar on a terminal; yield its callback, or None elsewhere."""
-    if not sys.stderr.isatty():
+    """Draw a progress bar on a terminal; yield its callback, or None where nobody looks."""
+    if not (_Talk.stream and sys.stderr.isatty()):
         yield None
         return
     from rich.console import Console
@@ -208,8 +209,30 @@ def quieten() -> None:
     logging.getLogger().addHandler(logging.NullHandler())
 
 
+class _Talk:
+    """Where the words of a command go: the name of a stream; empty if nobody wants them."""
+
+    stream = "stdout"
+
+
+@contextlib.contextmanager
+def talking(*, quiet: bool, aside: bool) -> Iterator[None]:
+    """Let a command say nothing if it is to be `quiet`, or say it to stderr, `aside`."""
+    before, _Talk.stream = _Talk.stream, "" if quiet else "stderr" if aside else "stdout"
+    try:
+        yield
+    finally:
+        _Talk.stream = before
+
+
 def say(text: str) -> None:
-    """Print to stdout."""
+    """Print to stdout, or where a command is `talking`."""
+    if _Talk.stream:
+        _write(text, getattr(sys, _Talk.stream))
+
+
+def answer(text: str) -> None:
+    """Print what programs read to stdout, whatever else is said."""
     _write(text, sys.stdout)
 
 

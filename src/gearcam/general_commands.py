@@ -7,26 +7,39 @@ from dataclasses import replace
 from pathlib import Path
 
 from gearcam.base.errors import Problem
-from gearcam.commands import GOOD, Options, add_output, each_result, refuse
+from gearcam.commands import (
+    GOOD,
+    Options,
+    add_output,
+    add_summary,
+    each_result,
+    refuse,
+    suggest,
+)
+from gearcam.completion import PLACES, SHELLS
 from gearcam.console import catalogue_lines, say
 from gearcam.designs import load
 from gearcam.designs.faults import unknown_word
 from gearcam.designs.kind import all_formats
 from gearcam.designs.outputs import FORMATS
+from gearcam.designs.reader import STDIN
 from gearcam.results.kind import KINDS
 
 
 def add_files(parser: argparse.ArgumentParser) -> None:
     """Add design files and the output folder to a `parser`."""
-    parser.add_argument("files", nargs="+", metavar="FILE", help="design files (TOML)")
+    words = f"design files (TOML); {STDIN} is the standard input"
+    parser.add_argument("files", nargs="+", metavar="FILE", help=words)
     add_output(parser)
+    add_summary(parser)
 
 
 def build_options(parser: argparse.ArgumentParser) -> None:
     """Add what ``gearcam build`` takes to a `parser`."""
     add_files(parser)
     words = "write these files instead of output.files: {formats}"
-    parser.add_argument("--only", action="append", metavar="A,B,...", help=words)
+    only = parser.add_argument("--only", action="append", metavar="A,B,...", help=words)
+    suggest(only, all_formats)
 
 
 def build(options: Options) -> int:
@@ -38,6 +51,7 @@ def build(options: Options) -> int:
         "built",
         lambda result, progress: result.write(output, formats, progress),
         debug=options["debug"],
+        as_json=options["json"],
     )
 
 
@@ -63,6 +77,7 @@ def check(options: Options) -> int:
         "checked",
         lambda result, _: result.check(options["output"]),
         debug=options["debug"],
+        as_json=options["json"],
     )
 
 
@@ -78,10 +93,13 @@ def laws(_: Options) -> int:
 def new_options(parser: argparse.ArgumentParser) -> None:
     """Add what ``gearcam new`` takes to a `parser`."""
     words = f"kind of design: {' or '.join(KINDS)}"
-    parser.add_argument("kind", metavar="KIND", help=words)
+    suggest(parser.add_argument("kind", metavar="KIND", help=words), lambda: KINDS)
     parser.add_argument("file", nargs="?", metavar="FILE", help="default: stdout")
     words = "preset backlash, clearance, kerf and tool for printing, laser, wire or milling"
-    parser.add_argument("--for", dest="process", metavar="PROCESS", help=words)
+    process = parser.add_argument("--for", dest="process", metavar="PROCESS", help=words)
+    suggest(
+        process, lambda: dict.fromkeys(one for kind in KINDS.values() for one in kind.processes)
+    )
 
 
 def new(options: Options) -> int:
@@ -114,3 +132,16 @@ def schema(_: Options) -> int:
 
     say(json.dumps(made(), indent=2))
     return GOOD
+
+
+def completion_options(parser: argparse.ArgumentParser) -> None:
+    """Add what ``gearcam completion`` takes to a `parser`."""
+    places = "; ".join(f"{shell}: {place}" for shell, place in PLACES.items())
+    words = f"the shell; its script belongs into ({places})"
+    parser.add_argument("shell", metavar="SHELL", choices=SHELLS, help=words)
+
+
+def skill_options(parser: argparse.ArgumentParser) -> None:
+    """Add what ``gearcam skill`` takes to a `parser`."""
+    words = "a new file, such as SKILL.md; default: stdout"
+    parser.add_argument("file", nargs="?", metavar="FILE", help=words)

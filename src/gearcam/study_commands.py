@@ -10,9 +10,10 @@ from typing import Any
 from gearcam.base.errors import DesignError, Problem
 from gearcam.base.kinds import kind_names, kind_studies
 from gearcam.base.quantities import FILE_KEYS, unit_of
-from gearcam.commands import Options, add_output, each_result
+from gearcam.commands import Options, add_output, add_summary, each_result, suggest
 from gearcam.designs import Design, load
 from gearcam.designs.kind import as_written
+from gearcam.designs.reader import STDIN
 from gearcam.results.kind import KINDS, Kind
 from gearcam.results.studies import Study
 
@@ -29,8 +30,10 @@ def add_options(study: Study, parser: argparse.ArgumentParser) -> None:
     """
     kinds = _kinds_with(study)
     number = "+" if study.many else None
-    parser.add_argument("designs", nargs=number, metavar="FILE", help="design file (TOML)")
+    words = f"design file (TOML); {STDIN} is the standard input"
+    parser.add_argument("designs", nargs=number, metavar="FILE", help=words)
     add_output(parser)
+    add_summary(parser)
     for kind in kinds:
         kind.titles_with([study.table])  # it may be of another package
     told, taken = _told(study.table, kinds), set[str]()
@@ -63,13 +66,15 @@ def run(study: Study, options: Options) -> int:
     """
     settings = dict(options)
     files = settings.pop("designs")
-    output, debug = settings.pop("output"), settings.pop("debug")
+    output, debug, as_json = (settings.pop(name) for name in ("output", "debug", "json"))
+    del settings["quiet"]
     return each_result(
         files if study.many else [files],
         lambda file: studied(study, load(file), settings),
         study.done,
         lambda result, progress: result.study(study.name, progress).write(output),
         debug=debug,
+        as_json=as_json,
     )
 
 
@@ -119,7 +124,9 @@ def _add_settings(
             words |= {"type": entry.base, "metavar": unit or name}
         plain = key.removesuffix(entry.param.quantity.suffix).replace("_", "-")
         name = study.options.get(key, plain)
-        parser.add_argument(f"--{name}", dest=key, **words)
+        action = parser.add_argument(f"--{name}", dest=key, **words)
+        if choices := entry.param.choices:
+            suggest(action, partial(map, str, choices))
     for name, key in study.elsewhere.items():
         if name in taken:
             continue

@@ -10,12 +10,13 @@ import copy
 import dataclasses
 import importlib
 import os
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any, Final, Self
 
 from gearcam.base.pickling import pickled
+from gearcam.base.user_names import ForUsers
 
 WIDTH: Final = 96
 """Length of the one-line representation, characters."""
@@ -118,7 +119,7 @@ def _usual(field: dataclasses.Field[Any], value: Any) -> bool:
     return isinstance(value, bool | int | float | str | tuple) and value == field.default
 
 
-class NotebookView(ABC):
+class NotebookView(ForUsers):
     """Base of objects that a notebook shows as a picture with facts below."""
 
     @cached_property

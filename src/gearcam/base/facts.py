@@ -8,16 +8,20 @@ text, a list, a range ``{"min": ..., "max": ...}`` or ``{"least": ..., "mean": .
 
 from __future__ import annotations
 
+import json
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
+from types import MappingProxyType
 from typing import Any, Final
 
 from gearcam.base.display import ShortRepr, line, renderer
 from gearcam.base.errors import demand_finite
 from gearcam.base.numerals import formatted, told_apart
+from gearcam.base.two_names import fact_of
 
 Tree = dict[str, Any]
 """Facts by key: plain values, `Fact`, lists and groups of them."""
@@ -179,6 +183,8 @@ class Facts(Mapping[str, Any]):
         Names of the few quantities in the first line.
     title : str
         Name of the machine, at the start of that line.
+    repeated : mapping of str to str
+        Keys of the design that facts repeat, by these facts: either name finds them.
 
     Examples
     --------
@@ -191,7 +197,11 @@ class Facts(Mapping[str, Any]):
     """
 
     def __init__(
-        self, tree: Mapping[str, Any], headline: Sequence[str] = (), title: str = ""
+        self,
+        tree: Mapping[str, Any],
+        headline: Sequence[str] = (),
+        title: str = "",
+        repeated: Mapping[str, str] = MappingProxyType({}),
     ) -> None:
         for name, leaf in _leaves(tree):
             fact = leaf if isinstance(leaf, Fact) else Fact(leaf)
@@ -200,11 +210,16 @@ class Facts(Mapping[str, Any]):
         self._tree = tree
         self._headline = tuple(headline)
         self._title = title
+        self._repeated = repeated
 
     def with_groups(self, groups: Mapping[str, Any]) -> Facts:
         """Return the facts with others, `groups` by name; those of one name are united."""
         tree = _united(self._tree, {name: group for name, group in groups.items() if group})
-        return Facts(tree, self._headline, self._title)
+        return Facts(tree, self._headline, self._title, self._repeated)
+
+    def repeating(self, keys: Mapping[str, str]) -> Facts:
+        """Return the facts, found also by the `keys` that they repeat, given by the facts."""
+        return Facts(self._tree, self._headline, self._title, keys)
 
     def __repr__(self) -> str:
         return line(type(self).__name__, [*self.headline, f"{len(self)} facts"])
@@ -247,10 +262,10 @@ class Facts(Mapping[str, Any]):
         return _bare(self._tree)
 
     def __getitem__(self, name: str) -> Any:
-        try:
-            return _at(self.document, name)
-        except (LookupError, TypeError, ValueError, StopIteration):
-            raise KeyError(name) from None
+        for one in (name, fact_of(self._repeated, name)):
+            with suppress(LookupError, TypeError, ValueError, StopIteration):
+                return _at(self.document, one)
+        raise KeyError(name)
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._named)
@@ -276,8 +291,8 @@ class Facts(Mapping[str, Any]):
         yield from (one for one in self.shown() if one.name not in self._headline)
 
     def quantity(self, name: str) -> NamedFact:
-        """Return the quantity with a dotted `name`."""
-        return self._named[name]
+        """Return the quantity with a dotted `name`, or that repeats a key of this name."""
+        return self._named[name if name in self._named else fact_of(self._repeated, name)]
 
     def record(self) -> dict[str, float | str]:
         """Return all quantities as plain numbers and texts by dotted names (`Result.record`)."""
@@ -296,7 +311,7 @@ def _plain(name: str, value: Any) -> Iterator[tuple[str, float | str]]:
     elif isinstance(value, list) and value and all(isinstance(one, float) for one in value):
         yield from ((f"{name}.{place}", float(item)) for place, item in enumerate(value))
     elif isinstance(value, list):
-        yield name, ", ".join(map(text_of, value))
+        yield name, json.dumps(value)  # as in a design file, and as a key in the table of a sweep
     else:
         yield name, float(value) if isinstance(value, float) else value
 

@@ -254,13 +254,15 @@ _ALIASES: Final = {
 """Names of types in docstrings."""
 
 
-def described(owner: type) -> type:
-    """Add the parameters of a dataclass to its docstring.
+def described(owner: type, source: str = "") -> type:
+    """Add the parameters of a dataclass to its docstring, and where it comes from.
 
     Parameters
     ----------
     owner : type
-        A class; parameters that its docstring describes already are not added.
+        A class; what its docstring has already is not added.
+    source : str
+        Lines of the section References; none by default.
 
     Returns
     -------
@@ -274,10 +276,14 @@ def described(owner: type) -> type:
         for field in (dataclasses.fields(owner) if dataclasses.is_dataclass(owner) else ())
         if "param" in field.metadata and field.name not in documented
     ]
+    head, title, examples = doc.partition("\n\nExamples\n")
     if entries:
-        head, title, examples = doc.partition("\n\nExamples\n")
         start = "\n" if "\nParameters\n" in head else "\n\nParameters\n----------\n"
-        owner.__doc__ = head + start + "\n".join(entries) + title + examples
+        head += start + "\n".join(entries)
+    if source and "\nReferences\n" not in head:
+        head += f"\n\nReferences\n----------\n{source}"
+    if title or head != doc:
+        owner.__doc__ = head + title + examples
     return owner
 
 

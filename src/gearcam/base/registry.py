@@ -146,6 +146,7 @@ def lazy_names(
     lacks: str,
     classes: Callable[[], Mapping[str, type]],
     homes: Mapping[str, tuple[str, ...]] = MappingProxyType({}),
+    sources: Callable[[], Mapping[type, str]] = dict,
 ) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
     """Return ``__getattr__`` and ``__dir__`` of a package whose names are loaded on demand.
 
@@ -157,6 +158,8 @@ def lazy_names(
         Returns classes by name; called only for names with a capital letter.
     homes : mapping of str to tuple of str
         Other names, by the module that has them or is called so.
+    sources : callable
+        Returns where classes come from, for their docstrings.
 
     Returns
     -------
@@ -178,6 +181,6 @@ def lazy_names(
             raise AttributeError(f"{lacks} {name}; dir() lists all names")
         from gearcam.base.quantities import described
 
-        return described(known[name])
+        return described(known[name], sources().get(known[name], ""))
 
     return find, names

@@ -14,7 +14,7 @@ import json
 import os
 import pickle
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import InitVar, dataclass, field, fields, is_dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
@@ -24,13 +24,21 @@ from gearcam.base.errors import DesignError, InfeasibleError, Problem
 from gearcam.base.findings import Limits
 from gearcam.base.quantities import FILE_KEYS
 from gearcam.base.reading import UnreadableError, read
+from gearcam.base.two_names import key_of
 from gearcam.designs.examine import examine, examine_file
 from gearcam.designs.faults import dotted, functions_of, is_deep
 from gearcam.designs.kind import KINDS
 from gearcam.designs.lines import Path
 from gearcam.designs.nodes import Wanted, tables_in, wanted, written
 from gearcam.designs.outputs import OutputSpec
-from gearcam.designs.reader import content_of, decoded, document_in, problems_of
+from gearcam.designs.reader import (
+    STDIN,
+    STDIN_NAME,
+    content_of,
+    decoded,
+    document_in,
+    problems_of,
+)
 from gearcam.designs.table import settled
 from gearcam.numeric.arguments import instance
 
@@ -104,6 +112,9 @@ class Design:
             faults = examine(document_of(self)).faults
             if faults:
                 raise DesignError(fault.problem(self.source) for fault in faults)
+        goal, repeated = getattr(self, "goal", None), KINDS[self.kind].repeated
+        if goal is not None and repeated:
+            object.__setattr__(self, "goal", goal.named(repeated))
 
     if not TYPE_CHECKING:  # type checkers then find misspelt names
 
@@ -117,6 +128,12 @@ class Design:
                 if name in kind.added:
                     return () if name in kind.several else kind.tables[name]()
             raise AttributeError(f"{type(self).__name__} has no {name}", name=name, obj=self)
+
+    def __dir__(self) -> Iterable[str]:
+        """Return the tables of the design and what it can do."""
+        tables = {one.name for one in fields(self)} - {"added"}
+        names = {"kind", "to_dict", "with_", *tables, *self.added}
+        return [*(one for one in super().__dir__() if one.startswith("_")), *sorted(names)]
 
     def __eq__(self, other: object) -> bool:
         """Return whether another design has the same kind and values, regardless of its source."""
@@ -184,6 +201,13 @@ class Design:
         ------
         DesignError
             If the design contains a Python function, which a file cannot.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> document = gc.load("profiles/ellipse.toml").to_dict()
+        >>> document["pair"]["teeth"]
+        [41, 41]
         """
         document = document_of(self)
         _demand(
@@ -202,6 +226,8 @@ class Design:
         ----------
         changes : mapping of str to value
             New values by dotted keys of the design file, such as ``law.ratios[1]``, in its units.
+            None leaves a key out, so that it has its default. A fact that repeats a key stands for
+            it: ``pair.rack.addendum`` for ``rack.addendum``.
 
         Returns
         -------
@@ -212,9 +238,18 @@ class Design:
         ------
         DesignError
             If there is no such key, or a value is not allowed.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> design = gc.load("profiles/ellipse.toml").with_({"law.eccentricity": 0.2})
+        >>> design.law.eccentricity, round(gc.build(design).facts["pair.ratio"]["max"], 6)
+        (0.2, 1.5)
         """
         document, rule = document_of(self), "a mapping of dotted keys to values"
-        for key, value in instance("changes", changes, Mapping, rule).items():
+        left_out: list[Path] = []
+        for name, value in instance("changes", changes, Mapping, rule).items():
+            key = key_of(KINDS[self.kind].repeated, name) if isinstance(name, str) else name
             place: Any = document
             step: str | int = ""
             try:
@@ -222,16 +257,35 @@ class Design:
                 for step in path:
                     place = place.setdefault(step, {}) if isinstance(place, dict) else place[step]
                 step = last
+                if value is None and isinstance(place, dict):
+                    place.pop(last, None)
+                    left_out.append((*path, last))
+                    continue
                 place[last] = _own(value)  # later changes may lie within it
             except (IndexError, KeyError, TypeError, ValueError):  # the last: no step at all
                 allowed, hint = _numbered(place, step)
                 what = "there is no such key or index"
                 problem = Problem(what, self.source, key=key, allowed=allowed, hint=hint)
                 raise DesignError([problem]) from None
+        _demand_known(document, left_out, self.source)
         return design(document, self.source)
 
     def _settle(self) -> None:
         """Convert alternative forms of input into one form."""
+
+
+def _demand_known(document: dict[str, Any], left_out: Sequence[Path], source: str) -> None:
+    """Refuse keys that were left out of a `document` and that no design has (`DesignError`)."""
+    probe = _own(document)
+    for path in left_out:
+        place: Any = probe
+        for step in path[:-1]:
+            place = place.get(step, {}) if isinstance(place, dict) else place[step]
+        place.setdefault(path[-1], None)
+    faults = examine(probe).faults if left_out else ()
+    wrong = [one for one in faults if one.of_unknown_key and one.path in left_out]
+    if wrong:
+        raise DesignError(one.problem(source) for one in wrong)
 
 
 def _own(value: Any) -> Any:
@@ -433,7 +487,7 @@ def load(path: str | os.PathLike[str]) -> Design:
     Parameters
     ----------
     path : path
-        A TOML file in UTF-8.
+        A TOML file in UTF-8; ``-`` is the standard input.
 
     Returns
     -------
@@ -446,7 +500,8 @@ def load(path: str | os.PathLike[str]) -> Design:
         If the file cannot be read, or with all mistakes in it, each with its line.
     """
     file = os.fspath(path)
-    return loads(decoded(content_of(file), file), file=file)
+    name = STDIN_NAME if file == STDIN else file
+    return loads(decoded(content_of(file), name), file=name)
 
 
 def loads(text: str, *, file: str = "") -> Design:

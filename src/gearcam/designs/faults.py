@@ -52,6 +52,11 @@ class Fault:
     file: str = ""
     line: int | None = None
 
+    @property
+    def of_unknown_key(self) -> bool:
+        """Whether there is no key or table of this name."""
+        return self.message.startswith("unknown ")
+
     def problem(self, file: str, line: int | None = None) -> Problem:
         """Return the problem for a `file`, at a `line` if known."""
         value = None if self.value is MISSING else self.value

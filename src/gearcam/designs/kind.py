@@ -193,6 +193,8 @@ class DesignKind:
         Comments on tables of the example.
     processes : mapping of str to mapping
         Additions to the example for each process: ``printing``, ``laser`` or ``wire``.
+    repeated : mapping of str to str
+        Facts that repeat a key under another name: the keys, by the facts or what these begin with.
     brought : str
         Group of the tables that other packages bring and that a file may give several times; empty
         if they cannot. The settings of their studies are tables anyway.
@@ -216,6 +218,7 @@ class DesignKind:
     samples: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     notes: Mapping[str, str] = field(default_factory=dict)
     processes: Mapping[str, Mapping[str, Mapping[str, Any]]] = field(default_factory=dict)
+    repeated: Mapping[str, str] = field(default_factory=dict)
     brought: str = ""
 
     def __repr__(self) -> str:

@@ -11,8 +11,10 @@ import unicodedata
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, Final
+from weakref import WeakKeyDictionary
 
 from gearcam.base.errors import DesignError, Problem
+from gearcam.base.numerals import size_of
 from gearcam.base.quantities import FILE_KEYS, unit_of
 from gearcam.base.reading import UnreadableError, read
 from gearcam.designs.faults import DEEPEST, TOO_DEEP, Fault, is_deep
@@ -22,6 +24,15 @@ from gearcam.designs.measures import TYPESET, measure_hint, typed
 
 LARGEST: Final = 2_000_000
 """Largest size of a design file, bytes: twice that of a motion table of 20 000 rows."""
+
+STDIN: Final = "-"
+"""What is given for a file to read the standard input."""
+
+STDIN_NAME: Final = "stdin"
+"""What it is called in messages, and the name of a design that says none."""
+
+_read: WeakKeyDictionary[Any, bytes] = WeakKeyDictionary()
+"""What stood in a standard input, by its stream."""
 
 _PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
 _TWICE = re.compile(r"Cannot declare \((.*)\) twice")
@@ -64,19 +75,38 @@ _PLAIN: Final = {
 
 
 def content_of(file: str) -> bytes:
-    """Return the content of a `file`.
+    """Return the content of a `file`; of `STDIN` that of the standard input, which is read once.
 
     Raises
     ------
     DesignError
         If it cannot be read.
     """
+    if file == STDIN:
+        return _standard_input()
     try:
         return read(file, LARGEST)
     except UnreadableError as error:
         near = f"{Path(file)}.toml"
         hint = f"did you mean {near}?" if Path(near).is_file() else ""
         raise DesignError([Problem(str(error), file=file, hint=hint)]) from error
+
+
+def _standard_input() -> bytes:
+    """Return what stands in the standard input; several readers get the same."""
+    stream = sys.stdin
+    if stream is None:
+        raise DesignError.of("there is no standard input", allowed="the name of a file")
+    if stream not in _read:
+        try:
+            content = getattr(stream, "buffer", stream).read(LARGEST + 1)
+        except (OSError, ValueError) as error:
+            raise DesignError.of(f"the standard input cannot be read: {error}") from error
+        _read[stream] = content.encode() if isinstance(content, str) else content
+    if len(_read[stream]) > LARGEST:
+        message = f"the standard input is longer than {size_of(LARGEST)}, which is the most"
+        raise DesignError.of(message)
+    return _read[stream]
 
 
 def decoded(content: bytes, file: str) -> str:

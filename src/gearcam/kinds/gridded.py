@@ -71,6 +71,8 @@ class GriddedCam(LoadedCam, Result):
         Internal accuracy.
     """
 
+    for_users = ("solids",)
+
     design: Any
     stages: ClassVar[Mapping[str, str]] = {"program": "program", "cam": "cam", "checks": "checked"}
     before_studies = ("program", "cam")
@@ -392,7 +394,15 @@ class GriddedCam(LoadedCam, Result):
 
     @cached_property
     def solids(self) -> dict[str, Trimesh]:
-        """The cam as a closed `trimesh.Trimesh` object by name, mm."""
+        """The cam as a closed `trimesh.Trimesh` object by name, mm.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/cylinder_cam.toml"))
+        >>> result.solids["cam"].is_watertight
+        True
+        """
         from gearcam.export.mesh import trimeshes
 
         return trimeshes(self.meshes)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import TYPE_CHECKING, Final
@@ -15,6 +15,7 @@ from gearcam.base.errors import ABOVE, beyond_limit
 from gearcam.base.facts import Fact, extent
 from gearcam.base.quantities import ANGLE, COUNT, TEXT, fixed, param
 from gearcam.base.rules import Breach, distinct
+from gearcam.base.two_names import fact_of
 from gearcam.designs.outputs import OutputSpec, pose_param
 
 if TYPE_CHECKING:
@@ -155,6 +156,14 @@ class GoalSpec(ShortRepr):
         for number, name in enumerate(self.maximize or ()):
             if name in (self.minimize or ()):
                 yield "maximize", number, "it is to be least too", "one goal for a fact"
+
+    def named(self, keys: Mapping[str, str]) -> GoalSpec:
+        """Return the goals by the names of facts, where given as `keys` that these repeat."""
+        least, largest = (
+            names and tuple(fact_of(keys, one) for one in names)
+            for names in (self.minimize, self.maximize)
+        )
+        return replace(self, minimize=least, maximize=largest)
 
     @property
     def signs(self) -> dict[str, float]:

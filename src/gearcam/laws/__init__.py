@@ -1,15 +1,17 @@
-"""Laws of the transmission ratio, motion laws and lift programs.
+"""Ratio laws of gear pairs: ``gearcam.laws.Ellipse(eccentricity=0.3)``.
 
-The registries `gearcam.laws.ratio.LAWS` and `gearcam.laws.motion.MOTION_LAWS` load a law
-when it is used. Depends on numpy only.
-
-The parameters of ratio laws are attributes: ``gearcam.laws.Ellipse(eccentricity=0.3)``.
+``dir(gearcam.laws)`` lists them; ``help(gearcam.laws.Ellipse)`` explains one, with an example and
+its source. In a design file they are the table ``[law]``. Motion laws of cams are in
+``gearcam.motion_laws``.
 
 Examples
 --------
 >>> import gearcam as gc
->>> gc.laws.Ellipse(eccentricity=0.3)
-Ellipse(eccentricity=0.3, lobes=None)
+>>> law = gc.laws.Ellipse(eccentricity=0.3)
+>>> pair = gc.PairSpec(teeth=(30, 30), center_distance=120.0)  # mm
+>>> result = gc.build(gc.GearPairDesign(name="ellipse", law=law, pair=pair))
+>>> round(result.facts["pair.ratio"]["max"], 6)  # (1 + 0.3)/(1 - 0.3)
+1.857143
 """
 
 from __future__ import annotations
@@ -28,5 +30,12 @@ def _classes() -> dict[str, type]:
     return classes_in(LAWS)
 
 
+def _sources() -> dict[type, str]:
+    from gearcam.laws.entry import cited
+    from gearcam.laws.ratio import LAWS
+
+    return cited(LAWS.values())
+
+
 if not TYPE_CHECKING:  # type checkers then find misspelt names
-    __getattr__, __dir__ = lazy_names("there is no law", _classes)
+    __getattr__, __dir__ = lazy_names("there is no law", _classes, sources=_sources)

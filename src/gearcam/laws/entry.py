@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -96,3 +96,13 @@ SOURCES: Final[Mapping[str, str]] = {
     "New York, 2009",
 }
 """Author, title, place and year, by what citations begin with: ``Norton`` in ``Norton, ch. 3``."""
+
+
+def cited(entries: Iterable[LawEntry]) -> dict[type, str]:
+    """Return where laws come from, by the classes of their parameters: citation, then titles."""
+    return {
+        one.parameters: "\n".join(
+            [one.source, *(text for name, text in SOURCES.items() if name in one.source)]
+        )
+        for one in entries
+    }

@@ -61,6 +61,8 @@ class PartsResult(Result):
         Accuracy of the internal computations.
     """
 
+    for_users = ("parts", "solids")
+
     drafted: bool = False
     """Whether it is only looked at."""
     before_output: ClassVar[Sequence[str]] = ()
@@ -160,6 +162,14 @@ class PartsResult(Result):
         """The parts as closed `trimesh.Trimesh` objects by name, mm, each in its own frame.
 
         They extend from z = 0 to the width, hubs beyond it; `InfeasibleError` if impossible.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> solid = result.solids["gear1"]
+        >>> solid.is_watertight
+        True
         """
         from gearcam.export.mesh import trimeshes
 

@@ -77,6 +77,11 @@ class Result(Staged):
     True
     """
 
+    for_users = (
+        "chart", "charts", "check", "facts", "files", "findings", "picture", "plot", "record",
+        "scene", "studies", "study", "to_dict", "with_settings", "write",
+    )  # fmt: skip
+
     stages: ClassVar[Mapping[str, str]]
     """Attributes that a build computes before its files, by the names of the stages."""
     before_studies: ClassVar[Sequence[str]] = ()
@@ -92,7 +97,15 @@ class Result(Staged):
 
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
-        """The findings of all checks and of the studies that the design asks for, errors first."""
+        """The findings of all checks and of the studies that the design asks for, errors first.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> [(one.severity, one.code, one.where) for one in result.findings]
+        [('note', 'no-backlash', 'pair')]
+        """
         return merged(self.checked, self.studies.values())
 
     @property
@@ -105,6 +118,14 @@ class Result(Staged):
         """The outcomes of the studies that the design asks for, by name, computed once.
 
         Without one that is being computed: it may use scene, charts and facts of the design.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> asked = {"output.studies": ["mesh"], "meshing.steps": 4}
+        >>> result = gc.build(gc.load("profiles/ellipse.toml").with_(asked))
+        >>> list(result.studies), result.studies["mesh"].complete
+        (['mesh'], True)
         """
         asked = (name for name in self.design.output.studies if name not in self._running)
         return {name: self.study(name) for name in asked}
@@ -129,6 +150,14 @@ class Result(Staged):
             If designs of this kind have no such study.
         InfeasibleError
             If the design, or its study, is impossible.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> study = result.with_settings("meshing", {"steps": 4}).study("mesh")
+        >>> study.facts["meshing.contact_ratio"]["min"] > 1.6
+        True
         """
         entry = self.kind.studies[one_of("name", name, self.kind.studies)]
         outcome = self._studied.get(name)
@@ -159,6 +188,14 @@ class Result(Staged):
         ------
         DesignError
             If a setting is unknown, or its value is not allowed.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> coarse = result.with_settings("meshing", {"steps": 4})
+        >>> coarse.design.meshing.steps
+        4
         """
         if not settings:
             return self
@@ -183,7 +220,15 @@ class Result(Staged):
         return result
 
     def picture(self) -> str:
-        """Return the picture of the file kind ``svg``, or why there is none, as SVG text."""
+        """Return the picture of the file kind ``svg``, or why there is none, as SVG text.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> "<svg" in result.picture()
+        True
+        """
         if PICTURE not in self.kind.formats:
             return ""
         try:
@@ -204,7 +249,17 @@ class Result(Staged):
 
     @cached_property
     def facts(self) -> Facts:
-        """All computed quantities by dotted names (see docs/summary.md)."""
+        """All computed quantities by dotted names (see docs/summary.md).
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> round(result.facts["pair.center_distance_mm"], 4)
+        41.9607
+        >>> list(result.facts)[:3]
+        ['pair.type', 'pair.module_mm', 'pair.teeth']
+        """
         return self._with_studies(self.design_facts)
 
     def _with_studies(self, facts: Facts) -> Facts:
@@ -271,6 +326,14 @@ class Result(Staged):
 
         Facts, findings, design and versions as plain values, in the units of their names. Raises
         `InfeasibleError` if the design cannot be made.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> summary = result.to_dict()
+        >>> summary["pair"]["teeth"], [one["code"] for one in summary["findings"]]
+        ([41, 41], ['no-backlash'])
         """
         return self.summary(self.facts, self.findings).document()
 
@@ -295,6 +358,16 @@ class Result(Staged):
             If designs of this kind have no such files.
         InfeasibleError
             If the design cannot be made.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> tables = result.files("csv")  # nothing is written
+        >>> list(tables)
+        ['gear1_outline.csv', 'gear2_outline.csv', 'centrodes.csv']
+        >>> tables["centrodes.csv"][:21]
+        b'phi1_deg,phi2_deg,rat'
         """
         demand_formats(self.design, (name,))
         with self.rows.named():
@@ -302,7 +375,15 @@ class Result(Staged):
 
     @property
     def charts(self) -> tuple[str, ...]:
-        """Names that `chart` and `plot` accept; `InfeasibleError` if it cannot be made."""
+        """Names that `chart` and `plot` accept; `InfeasibleError` if it cannot be made.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> result.charts[:3]
+        ('ratio', 'pressure_angle', 'contact_ratio')
+        """
         names = (name for name in self.kind.charts if self._chart(name) is not None)
         return (*self._in_order(names), *self._study_charts)
 
@@ -347,6 +428,14 @@ class Result(Staged):
             If there is no such chart.
         InfeasibleError
             If the design cannot be made.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> chart = result.chart("ratio")
+        >>> chart.title, chart.y
+        ('Transmission ratio', 'ratio i21')
         """
         more = self._study_charts
         known = one_of("name", name, (*self.kind.charts, *more))
@@ -375,6 +464,14 @@ class Result(Staged):
             As `chart` does.
         MissingExtraError
             If matplotlib is not installed.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> axes = result.plot("ratio")
+        >>> axes.get_xlabel()
+        'driver angle phi1, deg'
         """
         return self.chart(name).draw(ax)
 
@@ -394,6 +491,14 @@ class Result(Staged):
         ------
         InfeasibleError
             If the design cannot be made.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> scene = result.scene(4)
+        >>> scene.driver, scene.places
+        ('driver angle phi1, deg', array([  0.,  90., 180., 270., 360.]))
         """
         from gearcam.pictures.scenes import PLACES
 
@@ -428,6 +533,14 @@ class Result(Staged):
         -------
         BuildOutput
             With the summary as its only file.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> written = result.check("output")
+        >>> written.files
+        ('summary.json',)
         """
         self.demand_goals()
         return self.summary(self.facts, self.findings).write(directory, {}, keep=True)
@@ -462,6 +575,14 @@ class Result(Staged):
             If the design cannot be made; then nothing is written or removed.
         WriteError
             If a file cannot be written.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> written = result.write("output", files=["dxf"])
+        >>> written.files
+        ('gear1.dxf', 'gear2.dxf', 'pair.dxf', 'summary.json')
         """
         formats = sorted(demand_formats(self.design, files), key=lambda name: name == REPORT)
         studies = self.design.output.studies

@@ -30,6 +30,8 @@ class Staged(NotebookView):
         Accuracy of the internal computations.
     """
 
+    for_users = ("design",)
+
     def __init__(self, design: Any, tolerances: Tolerances = DEFAULT) -> None:
         self.design = design
         self.tolerances = tolerances
@@ -103,7 +105,8 @@ class Staged(NotebookView):
         take as long as half of the checks.
         """
         tables = [{"note": note} for note in self.rows.notes]
-        return self.kind.facts(self).with_groups({"tables": tables})
+        facts = self.kind.facts(self).repeating(self.kind.repeated)
+        return facts.with_groups({"tables": tables})
 
     @cached_property
     def design_facts(self) -> Facts:

@@ -102,6 +102,11 @@ class StudyResult(NotebookView):
     (array([ 0.,  0., 90.]), True)
     """
 
+    for_users = (
+        "charts", "columns", "complete", "facts", "files", "findings", "picture", "to_dict",
+        "write",
+    )  # fmt: skip
+
     result: Staged
     study: Study
     file: str
@@ -119,7 +124,16 @@ class StudyResult(NotebookView):
 
     @property
     def complete(self) -> bool:
-        """Whether it was not interrupted."""
+        """Whether it was not interrupted.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> study = result.mesh(steps=4)
+        >>> study.complete, study.interrupted
+        (True, '')
+        """
         return not self.interrupted
 
     def __repr__(self) -> str:
@@ -131,7 +145,16 @@ class StudyResult(NotebookView):
 
     @cached_property
     def charts(self) -> Mapping[str, Chart]:
-        """Its charts by name."""
+        """Its charts by name.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> study = result.mesh(steps=4)
+        >>> list(study.charts)
+        ['transmission_error', 'contact_patch']
+        """
         return self.drawn()
 
     def __getstate__(self) -> dict[str, Any]:
@@ -143,32 +166,86 @@ class StudyResult(NotebookView):
 
     @cached_property
     def columns(self) -> Columns:
-        """The table with the columns of the CSV file; missing values are NaN."""
+        """The table with the columns of the CSV file; missing values are NaN.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> study = result.mesh(steps=4)
+        >>> list(study.columns)[:3]
+        ['step', 'phi1_deg', 'phi2_deg']
+        """
         return Columns(self.table)
 
     @cached_property
     def facts(self) -> Facts:
-        """The facts of the result and of the study (see docs/summary.md)."""
+        """The facts of the result and of the study (see docs/summary.md).
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> study = result.mesh(steps=4)
+        >>> study.facts["meshing.steps"]
+        4
+        """
         return self.result.design_facts.with_groups({self.study.key: self.group})
 
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
-        """Findings of the study, and those of the design that it does not repeat; errors first."""
+        """Findings of the study, and those of the design that it does not repeat; errors first.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> study = result.mesh(steps=4)
+        >>> [one.code for one in study.findings]
+        ['no-backlash']
+        """
         return merged(self.result.checked, (self,))
 
     def picture(self) -> str:
-        """Return an empty text: a study has no picture."""
+        """Return an empty text: a study has no picture.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> study = result.mesh(steps=4)
+        >>> study.picture()
+        ''
+        """
         return ""
 
     @property
     def files(self) -> dict[str, bytes]:
-        """Its files: the table and its pages, by name."""
+        """Its files: the table and its pages, by name.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> study = result.mesh(steps=4)
+        >>> list(study.files)
+        ['meshing.csv']
+        """
         from gearcam.export.table import table_bytes
 
         return {self.file: table_bytes(self.table), **self.pages}
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the content of ``summary.json`` without files (see `Result.to_dict`)."""
+        """Return the content of ``summary.json`` without files (see `Result.to_dict`).
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> study = result.mesh(steps=4)
+        >>> study.to_dict()["meshing"]["steps"]
+        4
+        """
         return self.result.summary(self.facts, self.findings).document()
 
     def write(self, directory: str | Path = "output") -> BuildOutput:
@@ -188,6 +265,14 @@ class StudyResult(NotebookView):
         ------
         WriteError
             If a file cannot be written.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> study = result.mesh(steps=4)
+        >>> study.write("output").files
+        ('meshing.csv', 'summary.json')
         """
         summary = self.result.summary(self.facts, self.findings)
         written = summary.write(directory, self.files, keep=True)

@@ -10,7 +10,7 @@ import hashlib
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Final, Literal
 
@@ -18,7 +18,9 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import DesignError, Problem
+from gearcam.base.two_names import key_of
 from gearcam.designs.design import Design, document_of, value_at
+from gearcam.designs.kind import KINDS
 from gearcam.numeric.arrays import Array
 from gearcam.sweep.axes import Varied
 
@@ -64,6 +66,9 @@ class Plan(ShortRepr):
     seed: int = 1
 
     def __post_init__(self) -> None:
+        names = KINDS[self.base.kind].repeated  # a fact that repeats a key stands for it
+        axes = tuple(replace(one, key=key_of(names, one.key)) for one in self.axes)
+        object.__setattr__(self, "axes", axes)
         problems = [
             Problem(
                 f"{axis.text} has no step",

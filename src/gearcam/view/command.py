@@ -8,10 +8,11 @@ import webbrowser
 from argparse import ArgumentParser
 from collections.abc import Callable
 
+from gearcam.base.errors import DesignError
 from gearcam.base.interrupts import unbroken
 from gearcam.commands import GOOD, Options, each
 from gearcam.console import complain, say
-from gearcam.designs.reader import content_of
+from gearcam.designs.reader import STDIN, content_of
 from gearcam.view.server import Server
 from gearcam.view.session import Session, State
 from gearcam.view.watch import PAUSE, Watch
@@ -39,6 +40,9 @@ def view(options: Options) -> int:
 
 def _serve(file: str, port: int, *, browser: bool) -> None:
     """Serve the page of a design `file`; one with errors is shown once it is corrected."""
+    if file == STDIN:
+        what = "the live view follows a file and cannot show the standard input"
+        raise DesignError.of(what, allowed="the name of a design file")
     content_of(file)
     workers = Workers()
     session = Session(file, workers, workers.count, reporter(file))

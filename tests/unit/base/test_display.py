@@ -47,7 +47,8 @@ def reached(start: object) -> Iterator[tuple[str, object]]:
             count[type(one)] = count.get(type(one), 0) + 1
             if count[type(one)] <= EACH:
                 yield way, one
-                names = [name for name in dir(one) if not name.startswith("_")]
+                listed = {*object.__dir__(one), *dir(one)}  # also what is not for users
+                names = sorted(name for name in listed if not name.startswith("_"))
                 names = names if depth < DEEP else []
                 todo += [(f"{way}.{name}", _got(one, name), depth + 1) for name in names]
 

@@ -303,6 +303,16 @@ KIND: Final = Kind(
     nodes={"motion": MOTION},
     circumstances=circumstances,
     variants=VARIANTS,
+    repeated={
+        **{
+            f"cam.{size}_mm": f"follower.{size}_mm"
+            for size in (
+                *("arm", "dome_radius", "face_offset", "offset"),
+                *("pivot_distance", "preload", "roller_radius"),
+            )
+        },
+        "part.density_kg_m3": "blank.density_kg_m3",
+    },
     required=("motion", "follower", "cam"),
     rules=RULES,
     problems=problems,

@@ -65,7 +65,16 @@ class MadeCam(LoadedCam, PartsResult):
 
     @cached_property
     def cam(self) -> Cam:
-        """The cam; its curves and measures are computed on demand."""
+        """The cam; its curves and measures are computed on demand.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/eccentric_cam.toml"))
+        >>> x, y = result.cam.outline.T  # mm, the shaft at (0, 0)
+        >>> float(y.max().round(3))
+        25.0
+        """
         program = self.program
         with self.stage("cam"), self.rows.named():
             return self.form.make(program)
@@ -130,7 +139,15 @@ class MadeCam(LoadedCam, PartsResult):
 
     @cached_property
     def parts(self) -> tuple[Part, ...]:
-        """The cam as one or several parts."""
+        """The cam as one or several parts.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/eccentric_cam.toml"))
+        >>> [(part.name, part.width) for part in result.parts]
+        [('cam', 10.0)]
+        """
         _ = self.profiles  # timed separately
         with self.stage("part"):
             return self.form.parts(self.cam)

@@ -58,6 +58,8 @@ class CamResult(MadeCam):
     62.0
     """
 
+    for_users = ("cam", "contact", "follow", "motion", "solved")
+
     stages: ClassVar[Mapping[str, str]] = {
         "program": "program",
         "cam": "cam",
@@ -77,7 +79,16 @@ class CamResult(MadeCam):
 
     @property
     def solved(self) -> CamDesign:
-        """The design with all its sizes."""
+        """The design with all its sizes.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> asked = {"cam.prime_radius_mm": "solve"}
+        >>> result = gc.build(gc.load("profiles/plate_cam_offset_roller.toml").with_(asked))
+        >>> round(result.solved.cam.prime_radius, 2)
+        32.37
+        """
         return self.design if self.solution is None else self.solution.design
 
     @property
@@ -121,6 +132,14 @@ class CamResult(MadeCam):
             If `theta` is not an array of finite numbers, or beyond the travel of a translating cam.
         InfeasibleError
             If the cam is impossible.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/eccentric_cam.toml"))
+        >>> columns = result.motion([0.0, 1.0])  # cam angles, rad
+        >>> columns["lift_mm"].round(3), columns["pressure_angle_deg"].round(3)
+        (array([0.   , 2.758]), array([0., 0.]))
         """
         return self.motion_at(self._asked(theta))
 
@@ -207,6 +226,14 @@ class CamResult(MadeCam):
             or the wall is unknown.
         InfeasibleError
             If the cam is impossible.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/eccentric_cam.toml"))
+        >>> columns = result.contact([1.0])
+        >>> columns["x_mm"].round(3), columns["y_mm"].round(3)
+        (array([-26.086]), array([10.749]))
         """
         touched, driver = self.wall(wall), self.driver
         left, points, normals = touched.places_at(self._asked(theta))
@@ -286,6 +313,14 @@ class CamResult(MadeCam):
             If the follower cannot rest on the profile, or no phases can be found.
         DesignError
             If it is not a profile, or the file cannot be read.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/eccentric_cam.toml"))
+        >>> study = result.follow(result.cam.outline)
+        >>> abs(study.facts["followed.largest_difference"]) < 0.002
+        True
         """
         study = self.kind.studies["follow"]
         return study.compute(self, progress or silent, profile=profile, wall=wall, fit=fit)

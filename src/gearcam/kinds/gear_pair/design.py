@@ -300,6 +300,7 @@ KIND: Final = Kind(
     design=GearPairDesign,
     result=deferred(f"{_HERE}.result:GearPairResult"),
     nodes={"law": LAW},
+    repeated={"pair.rack": "rack"},
     required=("law", "pair"),
     rules=RULES,
     problems=problems,

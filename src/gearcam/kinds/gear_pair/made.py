@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Final, TypeAlias
 
@@ -59,18 +60,38 @@ class MadePair(PartsResult):
 
     @cached_property
     def law(self) -> RatioLaw:
-        """The ratio law."""
+        """The ratio law.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> low, high = result.law.ratio_range  # each with the driver angle, rad
+        >>> round(low[1], 4), round(high[1], 4)
+        (0.5385, 1.8571)
+        """
         parameters, pair = self.design.law, self.design.pair
         with self.stage("law"), self.rows.named():
             if not is_open(parameters):
                 demand_ring(pair)
-            law = parameters.build(lobes_of(pair), self.tolerances)
+            built = parameters.build(lobes_of(pair), self.tolerances)
+            law = replace(built, name=self.design.law_type)
             _demand_reached(self.design.output.pose, law)
         return law
 
     @cached_property
     def pair(self) -> GearPair:
-        """The centrodes with their cutters."""
+        """The centrodes with their cutters.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> result.pair.module, result.pair.teeth
+        (1.0, (41, 41))
+        >>> round(result.pair.center_distance, 4)
+        41.9607
+        """
         law = self.law
         with self.stage("centrodes"), self.rows.named():
             return make_pair(
@@ -93,12 +114,29 @@ class MadePair(PartsResult):
 
     @cached_property
     def gear1(self) -> Gear:
-        """The driver."""
+        """The driver.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> result.gear1.outline.shape[1], result.pair.teeth[0]
+        (2, 41)
+        """
         return self._gear(1, self.pair)
 
     @cached_property
     def gear2(self) -> Gear:
-        """The driven wheel."""
+        """The driven wheel.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> x, y = result.gear2.outline.T  # mm, its shaft at (0, 0)
+        >>> bool(x.max() > 0)
+        True
+        """
         return self._gear(2, self.pair)
 
     @cached_property
@@ -128,7 +166,15 @@ class MadePair(PartsResult):
 
     @property
     def gears(self) -> tuple[Gear, Gear]:
-        """Both wheels, driver first."""
+        """Both wheels, driver first.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> [gear.wheel for gear in result.gears]
+        [1, 2]
+        """
         return self.gear1, self.gear2
 
     @property
@@ -172,7 +218,15 @@ class MadePair(PartsResult):
 
     @cached_property
     def parts(self) -> tuple[Part, Part]:
-        """Both wheels as parts, with openings, hubs, marks, clearance and rounded edges."""
+        """Both wheels as parts, with openings, hubs, marks, clearance and rounded edges.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> [(part.name, part.width) for part in result.parts]
+        [('gear1', 10.0), ('gear2', 10.0)]
+        """
         from gearcam.kinds.gear_pair.parts import make_parts
 
         _ = self.steps  # timed separately

@@ -69,6 +69,11 @@ class GearPairResult(MadePair):
     array([  0., 360.])
     """
 
+    for_users = (
+        "centrodes", "contact", "contact_ratio", "contact_ratios", "gear1", "gear2", "gears",
+        "law", "mesh", "motion", "pair",
+    )  # fmt: skip
+
     stages: ClassVar[Mapping[str, str]] = {
         "law": "law",
         "centrodes": "pair",
@@ -193,6 +198,14 @@ class GearPairResult(MadePair):
             If `n` is not a whole number, or less than 2.
         InfeasibleError
             If the centrodes cannot be made.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> columns = result.centrodes(5)
+        >>> columns["r1_mm"].round(3)
+        array([14.686, 19.092, 27.274, 19.092, 14.686])
         """
         if n is None:
             return self.whole_centrodes
@@ -227,6 +240,13 @@ class GearPairResult(MadePair):
             If `phi1` is not an array of finite numbers, or beyond the travel.
         InfeasibleError
             If the law is impossible.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> result.motion([0.0, 3.141592653589793])["ratio"].round(4)
+        array([0.5385, 1.8571])
         """
         return motion_columns(self.pair, self._phases(phi1), self.design.drive.speed)
 
@@ -262,6 +282,14 @@ class GearPairResult(MadePair):
             If `phi1` is not an array of finite numbers, or beyond the travel, or `side` is unknown.
         InfeasibleError
             If the wheels are impossible.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> columns = result.contact([0.0])  # a row for each pair of teeth that touches
+        >>> columns["tooth1"], columns["pressure_angle_deg"].round(6)
+        (array([1, 2]), array([20., 20.]))
         """
         pairs, phases = self.flanks_of(side), self._phases(phi1)
         return contact_rows(self.pair, pairs, phases, contacts(pairs, phases))
@@ -305,7 +333,15 @@ class GearPairResult(MadePair):
 
     @cached_property
     def contact_ratio(self) -> float:
-        """Smallest contact ratio of all pairs of flanks, for both directions, as designed."""
+        """Smallest contact ratio of all pairs of flanks, for both directions, as designed.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> round(result.contact_ratio, 4)
+        1.7047
+        """
         return self.subject.contact_ratio
 
     @cached_property
@@ -315,6 +351,14 @@ class GearPairResult(MadePair):
         ``tooth1``, ``tooth2`` from 1; ``side`` of the driver's tooth, first -1 (driving), then +1
         (coast); ``contact_ratio``; ``from_deg``, ``to_deg``, driver angles at start and end of
         contact, nan without contact.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> columns = result.contact_ratios
+        >>> columns["tooth1"][:2], columns["contact_ratio"][:2].round(3)
+        (array([1, 2]), array([1.705, 1.705]))
         """
         return contact_ratio_columns(self.subject.sides)
 
@@ -352,5 +396,13 @@ class GearPairResult(MadePair):
             If the design, or its study, is impossible.
         KeyboardInterrupt
             If it was interrupted before the first steps were done.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> study = result.mesh(steps=4, center_distance_mm=42.0)
+        >>> round(study.facts["meshing.center_distance_mm"], 6)
+        42.0
         """
         return self.with_settings("meshing", settings).study("mesh", progress)

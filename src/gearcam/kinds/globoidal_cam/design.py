@@ -178,6 +178,10 @@ KIND: Final = Kind(
     design=GloboidalCamDesign,
     result=deferred(f"{_HERE}.result:GloboidalCamResult"),
     nodes={"index": INDEX},
+    repeated={
+        "cam.roller_radius_mm": "turret.roller_radius_mm",
+        "indexer.stops": "turret.stops",
+    },
     required=("index", "turret", "cam"),
     later=not_made,
     problems=problems,

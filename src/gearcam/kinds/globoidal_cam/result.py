@@ -67,6 +67,8 @@ class GloboidalCamResult(GriddedCam):
     ['upper', 'lower']
     """
 
+    for_users = ("cam", "motion")
+
     design: GloboidalCamDesign
     solid_files = frozenset({*MESHES, "report"})
     most_carved = 120
@@ -83,7 +85,15 @@ class GloboidalCamResult(GriddedCam):
 
     @cached_property
     def cam(self) -> GloboidalCam:
-        """The cam; its walls and measures are computed on demand."""
+        """The cam; its walls and measures are computed on demand.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/globoidal_indexer.toml"))
+        >>> len(result.cam.walls)
+        2
+        """
         program, design = self.program, self.design
         with self.stage("cam"):
             return make_globoidal(program, design.turret, design.cam, design.blank.bore)
@@ -164,6 +174,13 @@ class GloboidalCamResult(GriddedCam):
             If `theta` is not an array of finite numbers.
         InfeasibleError
             If the cam is impossible.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/globoidal_indexer.toml"))
+        >>> list(result.motion([0.0, 1.0]))[:2]
+        ['theta_deg', 'turret_deg']
         """
         return self.moved(theta, TURRET, math.degrees(1.0), "deg")
 

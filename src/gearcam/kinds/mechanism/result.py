@@ -87,6 +87,8 @@ class MechanismResult(Result):
     ['P', 'P', 'rocker.angle']
     """
 
+    for_users = ("compared", "comparison", "interval_table", "motion", "output", "outputs")
+
     design: MechanismDesign
     stages: ClassVar[Mapping[str, str]] = {
         "drives": "drives",
@@ -144,7 +146,15 @@ class MechanismResult(Result):
 
     @cached_property
     def outputs(self) -> tuple[Output, ...]:
-        """What is asked for, in order."""
+        """What is asked for, in order.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/nail_machine_slide.toml"))
+        >>> [(one.name, one.angle) for one in result.outputs]
+        [('slide', False), ('rod.angle', True)]
+        """
         return self.output_names.asked(self.design.output.outputs)
 
     @cached_property
@@ -202,6 +212,14 @@ class MechanismResult(Result):
             If `q` is not an array of finite numbers.
         InfeasibleError
             If the mechanism does not close.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/nail_machine_slide.toml"))
+        >>> columns = result.motion([0.0, 1.0])  # angles of the master, rad
+        >>> columns["slide_mm"].round(3)
+        array([600.   , 721.549])
         """
         return self._motion_of(self.outputs, q)
 
@@ -224,6 +242,13 @@ class MechanismResult(Result):
         ------
         DesignError
             If nothing moves by this name, or `q` is not an array of finite numbers.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/nail_machine_slide.toml"))
+        >>> result.output("pair.wheel2", [0.0, 1.0])["pair_wheel2_deg"].round(3)
+        array([ 0.   , 84.867])
         """
         if name not in self.output_names.known:
             raise DesignError([self.output_names.unknown(("name",), name).problem("")])
@@ -248,7 +273,15 @@ class MechanismResult(Result):
 
     @cached_property
     def compared(self) -> dict[str, MechanismResult]:
-        """The same mechanism behind the drives to compare, by their names."""
+        """The same mechanism behind the drives to compare, by their names.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/nail_machine_slide.toml"))
+        >>> list(result.compared)
+        ['three_phases', 'without_a_pair']
+        """
         return {
             one.name: self._behind(f"compare[{number}]", pair=one.pair, cam=one.cam, even=one.even)
             for number, one in enumerate(self.design.compare)
@@ -406,6 +439,14 @@ class MechanismResult(Result):
             angle with the places, ``velocity`` and ``velocity_at_deg`` and so on, in the unit or
             rad; with a speed those by time, ``velocity_per_s``, and the range's time, ``range_s``.
             Places of what stands still are masked.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/nail_machine_slide.toml"))
+        >>> columns = result.comparison()
+        >>> columns["drive"][::2].tolist(), columns["stroke"][::2].round(2)
+        (['pair', 'three_phases', 'without_a_pair'], array([300., 300., 300.]))
         """
         return Columns(self.masked_comparison())
 
@@ -422,6 +463,14 @@ class MechanismResult(Result):
             A row for each drive and interval: ``drive``, ``on``, ``before``, the master's angles
             ``from_deg``, ``to_deg``, ``angle_deg``, the velocity at the beginning by the master's
             angle; with a speed the time, ``time_s``, and the velocity by time.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/nail_machine_slide.toml"))
+        >>> columns = result.interval_table()
+        >>> columns["drive"].tolist(), columns["angle_deg"].round(2)
+        (['pair', 'three_phases', 'without_a_pair'], array([49.63, 47.16, 22.  ]))
         """
         rows = [row for one in self.machines.items() for row in _of_intervals(*one)]
         return Columns(_tabled(rows))

@@ -180,6 +180,10 @@ KIND: Final = Kind(
     result=deferred(f"{_HERE}.result:SpatialCamResult"),
     nodes={"motion": MOTION},
     circumstances=circumstances,
+    repeated={
+        "cam.roller_radius_mm": "follower.roller_radius_mm",
+        "cam.cone_deg": "follower.cone_deg",
+    },
     required=("motion", "follower", "cam"),
     problems=problems,
     check_modules=(

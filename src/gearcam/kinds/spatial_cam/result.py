@@ -73,6 +73,8 @@ class SpatialCamResult(GriddedCam):
     ['upper', 'lower']
     """
 
+    for_users = ("cam", "motion", "solved")
+
     design: SpatialCamDesign
     solid_files = frozenset({*MESHES, "step", "report"})
     most_carved = 240
@@ -101,7 +103,16 @@ class SpatialCamResult(GriddedCam):
 
     @cached_property
     def solved(self) -> SpatialCamDesign:
-        """The design with all its sizes."""
+        """The design with all its sizes.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> asked = {"cam.outer_diameter_mm": "solve"}
+        >>> result = gc.build(gc.load("profiles/cylinder_cam.toml").with_(asked))
+        >>> round(result.solved.cam.outer_diameter, 2)
+        187.81
+        """
         found = self.solution
         if found is None:
             return self.design
@@ -115,7 +126,15 @@ class SpatialCamResult(GriddedCam):
 
     @cached_property
     def cam(self) -> SpatialCam:
-        """The cam; its walls and measures are computed on demand."""
+        """The cam; its walls and measures are computed on demand.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/cylinder_cam.toml"))
+        >>> [wall.key for wall in result.cam.walls]
+        ['upper', 'lower']
+        """
         program, design = self.program, self.solved
         with self.stage("cam"), self.rows.named():
             return make_cylinder(program, design.follower, design.cam, design.blank.bore)
@@ -190,6 +209,13 @@ class SpatialCamResult(GriddedCam):
             If `theta` is not an array of finite numbers.
         InfeasibleError
             If the cam is impossible.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/cylinder_cam.toml"))
+        >>> result.motion([0.0, 1.0])["lift_mm"].round(3)
+        array([ 0.   , 17.915])
         """
         return self.moved(theta, "lift", *self.lift_unit)
 

@@ -1,12 +1,21 @@
-"""Motion laws: S over phi on the unit square, in the registry `motion.base.MOTION_LAWS`.
+"""Motion laws of cams: ``gearcam.motion_laws.Cycloidal()``.
 
-Their parameters are attributes: ``gearcam.motion_laws.Cycloidal()``.
+Each gives the share S of the lift over the share phi of the cam angle. ``dir`` lists them;
+``help(gearcam.motion_laws.Cycloidal)`` explains one, with an example and its source. In a design
+file the key ``law`` of a rise or return names one. Ratio laws of gear pairs are in
+``gearcam.laws``.
 
 Examples
 --------
 >>> import gearcam as gc
->>> gc.motion_laws.Cycloidal()
-Cycloidal()
+>>> rise = gc.RisePhase(angle=2.0, lift=10.0, law=gc.motion_laws.Cycloidal())  # rad, mm
+>>> back = gc.ReturnPhase(angle=2.0, law=gc.motion_laws.Polynomial345())
+>>> roller = gc.FollowerSpec(type="roller", roller_radius=8.0)
+>>> motion = (rise, back, gc.DwellPhase(angle="rest"))
+>>> cam = gc.CamSpec(prime_radius=40.0)
+>>> result = gc.build(gc.CamDesign(name="c", motion=motion, follower=roller, cam=cam))
+>>> result.motion([1.0, 2.0])["lift_mm"].round(6)
+array([ 5., 10.])
 """
 
 from __future__ import annotations
@@ -65,5 +74,11 @@ def _classes() -> dict[str, type]:
     return classes_in(MOTION_LAWS)
 
 
+def _sources() -> dict[type, str]:
+    from gearcam.laws.entry import cited
+
+    return cited(MOTION_LAWS.values())
+
+
 if not TYPE_CHECKING:  # type checkers then find misspelt names
-    __getattr__, __dir__ = lazy_names("there is no rise", _classes)
+    __getattr__, __dir__ = lazy_names("there is no rise", _classes, sources=_sources)

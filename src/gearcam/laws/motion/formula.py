@@ -35,6 +35,14 @@ class FormulaRise(ShortRepr):
     """S as a formula in x, which is phi; derivatives are exact, by Taylor arithmetic.
 
     In Python it may be a function, or a tuple of a function and its first derivatives.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.motion_laws.FormulaRise(formula="x**3*(10 - 15*x + 6*x**2)")
+    >>> lift = law.build(gc.Tolerances()).function
+    >>> [round(float(one), 4) for one in lift.derivatives(0.25, 2)]  # S, S', S'' at phi = 0.25
+    [0.1035, 1.0547, 5.625]
     """
 
     formula: Given = param(

@@ -39,6 +39,14 @@ class BSplineRise(ClosedForm):
 
     Each control value acts on S over a few knots; k equal values (zeros or ones) at an end make the
     first k - 1 derivatives zero there.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.motion_laws.BSplineRise(control=(0.0, 0.0, 0.0, 1.0, 1.0, 1.0))
+    >>> lift = law.build(gc.Tolerances()).function
+    >>> [round(float(one), 4) for one in lift.derivatives(0.25, 2)]  # S, S', S'' at phi = 0.25
+    [0.0938, 1.0, 6.0]
     """
 
     control: Row = param(
@@ -99,6 +107,14 @@ class TableRise(FromFile):
     Of all curves through the points with the given end conditions it has the least integral of the
     squared jerk. Velocity and acceleration can be given at both ends, so that it meets dwells
     without a jump of acceleration; a cubic spline could not.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.motion_laws.TableRise(x=(0.0, 0.5, 1.0), y=(0.0, 0.5, 1.0))
+    >>> lift = law.build(gc.Tolerances()).function
+    >>> [round(float(one), 4) for one in lift.derivatives(0.25, 2)]  # S, S', S'' at phi = 0.25
+    [0.1035, 1.0547, 5.625]
     """
 
     file: str | None = param(TEXT, default=None, doc="CSV file with the columns x and y")

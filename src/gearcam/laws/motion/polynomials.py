@@ -70,7 +70,16 @@ class _TwoEnded(ClosedForm):
 
 @dataclass(frozen=True, kw_only=True)
 class Polynomial(_TwoEnded):
-    """The polynomial of lowest degree with given derivatives at both ends."""
+    """The polynomial of lowest degree with given derivatives at both ends.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.motion_laws.Polynomial(start=(0.0, 0.0), end=(0.0, -6.0))
+    >>> lift = law.build(gc.Tolerances()).function
+    >>> [round(float(one), 4) for one in lift.derivatives(0.25, 2)]  # S, S', S'' at phi = 0.25
+    [0.0771, 0.8086, 4.6875]
+    """
 
     start: Row = param(
         NUMBER,
@@ -97,28 +106,64 @@ class Polynomial(_TwoEnded):
 
 @dataclass(frozen=True, kw_only=True)
 class Polynomial23(_TwoEnded):
-    """``S = 3*phi^2 - 2*phi^3``."""
+    """``S = 3*phi^2 - 2*phi^3``.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.motion_laws.Polynomial23()
+    >>> lift = law.build(gc.Tolerances()).function
+    >>> [round(float(one), 4) for one in lift.derivatives(0.25, 2)]  # S, S', S'' at phi = 0.25
+    [0.1562, 1.125, 3.0]
+    """
 
     start = end = (0.0,)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Polynomial345(_TwoEnded):
-    """``S = 10*phi^3 - 15*phi^4 + 6*phi^5``."""
+    """``S = 10*phi^3 - 15*phi^4 + 6*phi^5``.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.motion_laws.Polynomial345()
+    >>> lift = law.build(gc.Tolerances()).function
+    >>> [round(float(one), 4) for one in lift.derivatives(0.25, 2)]  # S, S', S'' at phi = 0.25
+    [0.1035, 1.0547, 5.625]
+    """
 
     start = end = (0.0, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Polynomial4567(_TwoEnded):
-    """``S = 35*phi^4 - 84*phi^5 + 70*phi^6 - 20*phi^7``."""
+    """``S = 35*phi^4 - 84*phi^5 + 70*phi^6 - 20*phi^7``.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.motion_laws.Polynomial4567()
+    >>> lift = law.build(gc.Tolerances()).function
+    >>> [round(float(one), 4) for one in lift.derivatives(0.25, 2)]  # S, S', S'' at phi = 0.25
+    [0.0706, 0.9229, 7.3828]
+    """
 
     start = end = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Polynomial56789(_TwoEnded):
-    """``S = 126*phi^5 - 420*phi^6 + 540*phi^7 - 315*phi^8 + 70*phi^9``."""
+    """``S = 126*phi^5 - 420*phi^6 + 540*phi^7 - 315*phi^8 + 70*phi^9``.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.motion_laws.Polynomial56789()
+    >>> lift = law.build(gc.Tolerances()).function
+    >>> [round(float(one), 4) for one in lift.derivatives(0.25, 2)]  # S, S', S'' at phi = 0.25
+    [0.0489, 0.7787, 8.3057]
+    """
 
     start = end = (0.0, 0.0, 0.0, 0.0)
 
@@ -129,6 +174,14 @@ class Polynomial3456(_TwoEnded):
 
     At the top the acceleration is -6 and the jerk 0. A return of the same law without a dwell
     continues the same polynomial, so that all derivatives are continuous at the top.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.motion_laws.Polynomial3456()
+    >>> lift = law.build(gc.Tolerances()).function
+    >>> [round(float(one), 4) for one in lift.derivatives(0.25, 2)]  # S, S', S'' at phi = 0.25
+    [0.0837, 0.8613, 4.7578]
     """
 
     mirrored = True

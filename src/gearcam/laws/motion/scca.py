@@ -28,7 +28,16 @@ from gearcam.numeric.piecewise import Piecewise
 
 @dataclass(frozen=True, kw_only=True)
 class Scca(ClosedForm):
-    """Sine, constant, cosine acceleration, by the widths of its sectors."""
+    """Sine, constant, cosine acceleration, by the widths of its sectors.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.motion_laws.Scca(b=0.2, c=0.5, d=0.3)
+    >>> lift = law.build(gc.Tolerances()).function
+    >>> [round(float(one), 4) for one in lift.derivatives(0.25, 2)]  # S, S', S'' at phi = 0.25
+    [0.1094, 1.0112, 4.7327]
+    """
 
     b: float = param(NUMBER, ge=0, le=1, doc="total width of the two sine sectors")
     c: float = param(
@@ -87,7 +96,16 @@ def scca(b: float, c: float, d: float) -> Piecewise:
 
 @dataclass(frozen=True, kw_only=True)
 class ModifiedTrapezoid(ClosedForm):
-    """A trapezoid of acceleration with rounded flanks: b, c, d = 1/4, 1/2, 1/4."""
+    """A trapezoid of acceleration with rounded flanks: b, c, d = 1/4, 1/2, 1/4.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.motion_laws.ModifiedTrapezoid()
+    >>> lift = law.build(gc.Tolerances()).function
+    >>> [round(float(one), 4) for one in lift.derivatives(0.25, 2)]  # S, S', S'' at phi = 0.25
+    [0.1045, 1.0, 4.8881]
+    """
 
     def function(self) -> Piecewise:
         """S over phi."""
@@ -96,7 +114,16 @@ class ModifiedTrapezoid(ClosedForm):
 
 @dataclass(frozen=True, kw_only=True)
 class ModifiedSine(ClosedForm):
-    """A steep and a slow sine of acceleration: b, c, d = 1/4, 0, 3/4."""
+    """A steep and a slow sine of acceleration: b, c, d = 1/4, 0, 3/4.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.motion_laws.ModifiedSine()
+    >>> lift = law.build(gc.Tolerances()).function
+    >>> [round(float(one), 4) for one in lift.derivatives(0.125, 2)]  # S, S', S'' at phi = 0.125
+    [0.02, 0.4399, 5.528]
+    """
 
     def function(self) -> Piecewise:
         """S over phi."""

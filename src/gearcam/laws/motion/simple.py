@@ -16,7 +16,16 @@ from gearcam.numeric.piecewise import Piece, Piecewise, piecewise
 
 @dataclass(frozen=True, kw_only=True)
 class ConstantVelocity(ClosedForm):
-    """Constant velocity, which jumps at both ends."""
+    """Constant velocity, which jumps at both ends.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.motion_laws.ConstantVelocity()
+    >>> lift = law.build(gc.Tolerances()).function
+    >>> [round(float(one), 4) for one in lift.derivatives(0.25, 2)]  # S, S', S'' at phi = 0.25
+    [0.25, 1.0, 0.0]
+    """
 
     def function(self) -> Piecewise:
         """``S = phi``."""
@@ -25,7 +34,16 @@ class ConstantVelocity(ClosedForm):
 
 @dataclass(frozen=True, kw_only=True)
 class ConstantAcceleration(ClosedForm):
-    """Two parabolas: constant acceleration up to q, then constant deceleration."""
+    """Two parabolas: constant acceleration up to q, then constant deceleration.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.motion_laws.ConstantAcceleration(q=0.4)
+    >>> lift = law.build(gc.Tolerances()).function
+    >>> [round(float(one), 4) for one in lift.derivatives(0.25, 2)]  # S, S', S'' at phi = 0.25
+    [0.1562, 1.25, 5.0]
+    """
 
     q: float = param(
         NUMBER,
@@ -47,7 +65,16 @@ class ConstantAcceleration(ClosedForm):
 
 @dataclass(frozen=True, kw_only=True)
 class Harmonic(ClosedForm):
-    """Simple harmonic motion: acceleration ``(pi^2/2)*cos(pi*phi)``."""
+    """Simple harmonic motion: acceleration ``(pi^2/2)*cos(pi*phi)``.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.motion_laws.Harmonic()
+    >>> lift = law.build(gc.Tolerances()).function
+    >>> [round(float(one), 4) for one in lift.derivatives(0.25, 2)]  # S, S', S'' at phi = 0.25
+    [0.1464, 1.1107, 3.4894]
+    """
 
     def function(self) -> Piecewise:
         """``S = (1 - cos(pi*phi))/2``, which is ``sin(pi*phi/2)^2``."""
@@ -61,7 +88,16 @@ class Harmonic(ClosedForm):
 
 @dataclass(frozen=True, kw_only=True)
 class Cycloidal(ClosedForm):
-    """A sine of acceleration: ``2*pi*sin(2*pi*phi)``."""
+    """A sine of acceleration: ``2*pi*sin(2*pi*phi)``.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.motion_laws.Cycloidal()
+    >>> lift = law.build(gc.Tolerances()).function
+    >>> [round(float(one), 4) for one in lift.derivatives(0.25, 2)]  # S, S', S'' at phi = 0.25
+    [0.0908, 1.0, 6.2832]
+    """
 
     def function(self) -> Piecewise:
         """``S = phi - sin(2*pi*phi)/(2*pi)``."""
@@ -71,7 +107,16 @@ class Cycloidal(ClosedForm):
 
 @dataclass(frozen=True, kw_only=True)
 class TrapezoidalVelocity(ClosedForm):
-    """Constant velocity ``1/(1 - q)`` between two sectors of constant acceleration, q wide each."""
+    """Constant velocity ``1/(1 - q)`` between two sectors of constant acceleration, q wide each.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.motion_laws.TrapezoidalVelocity(q=0.3)
+    >>> lift = law.build(gc.Tolerances()).function
+    >>> [round(float(one), 4) for one in lift.derivatives(0.25, 2)]  # S, S', S'' at phi = 0.25
+    [0.1488, 1.1905, 4.7619]
+    """
 
     q: float = param(
         NUMBER, default=0.125, ge=NARROWEST, le=0.5, doc="share of the angle to full velocity"
@@ -87,7 +132,16 @@ class TrapezoidalVelocity(ClosedForm):
 
 @dataclass(frozen=True, kw_only=True)
 class SineTrapezoidalVelocity(ClosedForm):
-    """Constant velocity ``1/(1 - q)`` between two sectors of a half sine of acceleration."""
+    """Constant velocity ``1/(1 - q)`` between two sectors of a half sine of acceleration.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.motion_laws.SineTrapezoidalVelocity(q=0.3)
+    >>> lift = law.build(gc.Tolerances()).function
+    >>> [round(float(one), 4) for one in lift.derivatives(0.25, 2)]  # S, S', S'' at phi = 0.25
+    [0.1445, 1.3329, 3.74]
+    """
 
     q: float = param(
         NUMBER, default=0.125, ge=NARROWEST, le=0.5, doc="share of the angle to full velocity"
@@ -106,7 +160,16 @@ class SineTrapezoidalVelocity(ClosedForm):
 
 @dataclass(frozen=True, kw_only=True)
 class TrapezoidalAcceleration(ClosedForm):
-    """Two trapezoids of acceleration, ``A = 4/(1 - 2*q)`` high, with flanks q wide."""
+    """Two trapezoids of acceleration, ``A = 4/(1 - 2*q)`` high, with flanks q wide.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.motion_laws.TrapezoidalAcceleration(q=0.125)
+    >>> lift = law.build(gc.Tolerances()).function
+    >>> [round(float(one), 4) for one in lift.derivatives(0.25, 2)]  # S, S', S'' at phi = 0.25
+    [0.0972, 1.0, 5.3333]
+    """
 
     q: float = param(
         NUMBER,

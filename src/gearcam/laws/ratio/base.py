@@ -49,6 +49,8 @@ class RatioLaw(ShortRepr, Displacement):
 
     Parameters
     ----------
+    name : str
+        Its name in design files; empty if it has none.
     lobes : Lobes or Travel
         Periods of driver and driven wheel, or the travels of an open pair.
     ratio : Piecewise
@@ -62,6 +64,7 @@ class RatioLaw(ShortRepr, Displacement):
         1/rad, and of its second derivative.
     """
 
+    name: str = ""
     lobes: Span
     ratio: Piecewise
     driven: Piecewise | Expansion

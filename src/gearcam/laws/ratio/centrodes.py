@@ -48,6 +48,15 @@ class EccentricCircle:
     """A circle of radius 1 with its shaft `eccentricity` beside its centre; far side at phi1 = 0.
 
     ``r1 = e*cos(phi1) + sqrt(1 - (e*sin(phi1))^2)``.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.laws.EccentricCircle(eccentricity=0.3)
+    >>> pair = gc.PairSpec(teeth=(30, 30), module=2.0)
+    >>> result = gc.build(gc.GearPairDesign(name="eccentric", law=law, pair=pair))
+    >>> result.motion([0.0, 3.141592653589793])["ratio"].round(4)
+    array([1.7478, 0.5209])
     """
 
     eccentricity: float = param(
@@ -74,7 +83,17 @@ class EccentricCircle:
 
 @dataclass(frozen=True, kw_only=True)
 class Limacon:
-    """Pascal's limacon, ``r1 = 1 + e*cos(phi1)``."""
+    """Pascal's limacon, ``r1 = 1 + e*cos(phi1)``.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.laws.Limacon(eccentricity=0.3)
+    >>> pair = gc.PairSpec(teeth=(30, 30), module=2.0)
+    >>> result = gc.build(gc.GearPairDesign(name="limacon", law=law, pair=pair))
+    >>> result.motion([0.0, 3.141592653589793])["ratio"].round(4)
+    array([1.6568, 0.5056])
+    """
 
     eccentricity: float = param(
         NUMBER, ge=0, lt=1, constant_at=0, doc="amplitude of the radius over its mean"
@@ -94,7 +113,17 @@ class Limacon:
 
 @dataclass(frozen=True, kw_only=True)
 class Lobed:
-    """``r1 = 1 + e*cos(n1*phi1)`` with n1 lobes."""
+    """``r1 = 1 + e*cos(n1*phi1)`` with n1 lobes.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.laws.Lobed(eccentricity=0.1)
+    >>> pair = gc.PairSpec(teeth=(20, 40), module=2.0)
+    >>> result = gc.build(gc.GearPairDesign(name="lobed", law=law, pair=pair))
+    >>> result.motion([0.0, 3.141592653589793])["ratio"].round(4)
+    array([0.5767, 0.4271])
+    """
 
     eccentricity: float = param(
         NUMBER, ge=0, lt=1, constant_at=0, doc="amplitude of the radius over its mean"
@@ -154,6 +183,15 @@ class LogSpiral(ShortRepr):
     even h makes both centrodes equal: ``i = (1 - h')/(1 + h')`` at -t is 1/i at t. On the spiral,
     as long on both wheels, ``h' = -tanh(c*(t - pi))``, ``c = ln(k)/(2*pi - return_angle)``; on the
     return h' is the odd polynomial of degree 5 that continues it up to its second derivative.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.laws.LogSpiral(ratios=(0.5, 2.0), driven_travel=2.0)
+    >>> pair = gc.PairSpec(teeth=(30, 30), module=2.0)
+    >>> result = gc.build(gc.GearPairDesign(name="spiral", law=law, pair=pair))
+    >>> result.motion([0.0, 1.0])["ratio"].round(4)
+    array([0.5   , 0.8918])
     """
 
     ratios: tuple[float | Solve, float | Solve] = param(

@@ -49,6 +49,17 @@ class Multispeed(ShortRepr):
 
     A closed law ends with a transition to its first ratio; an open one (with `driven_travel`) ends
     with its last constant ratio.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.laws.Multispeed(
+    ...     ratios=(0.8, "solve"), angles=(2.1, 2.183185307179586), transition=1.0
+    ... )
+    >>> pair = gc.PairSpec(teeth=(30, 30), module=2.0)
+    >>> result = gc.build(gc.GearPairDesign(name="two_speeds", law=law, pair=pair))
+    >>> result.motion([0.0, 3.5])["ratio"].round(4)
+    array([0.8   , 1.1948])
     """
 
     ratios: RowOfSome = param(
@@ -118,6 +129,15 @@ class ThreePhasePolynomial(ShortRepr):
     The ratio starts at b with slope zero, is `lowest` = a at the second knot with slope zero, and
     rises by two parabolas that meet at the third knot with a common slope p. Closure gives p
     and with it the ratio there, ``i_i = a + p*(k2 - k1)/2``, and ``b = a + p*(k3 - k1)/2``.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.laws.ThreePhasePolynomial(knots=(0.0, 2.8, 4.7, 6.283185307179586), lowest=0.4)
+    >>> pair = gc.PairSpec(teeth=(30, 30), module=2.0)
+    >>> result = gc.build(gc.GearPairDesign(name="polynomial", law=law, pair=pair))
+    >>> result.motion([0.0, 2.8])["ratio"].round(4)
+    array([1.6205, 0.4   ])
     """
 
     knots: tuple[float, float, float, float] = param(
@@ -174,6 +194,15 @@ class Fourier(ShortRepr):
 
     For the ratio ``i21 = (n1/n2)*f``. For phi2 the driven angle over the mean ratio is ``phi1``
     plus the sums, in degrees, minus their value at phi1 = 0. Both always close.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.laws.Fourier(cosines=(0.2, 0.1))
+    >>> pair = gc.PairSpec(teeth=(30, 30), module=2.0)
+    >>> result = gc.build(gc.GearPairDesign(name="fourier", law=law, pair=pair))
+    >>> result.motion([0.0, 3.141592653589793])["ratio"].round(4)
+    array([1.3, 0.9])
     """
 
     of: str = param(

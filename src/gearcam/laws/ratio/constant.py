@@ -14,7 +14,17 @@ from gearcam.numeric.piecewise import Piece
 
 @dataclass(frozen=True, kw_only=True)
 class Constant:
-    """No parameters: the tooth counts give the ratio."""
+    """No parameters: the tooth counts give the ratio.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.laws.Constant()
+    >>> pair = gc.PairSpec(teeth=(20, 40), module=2.0)
+    >>> result = gc.build(gc.GearPairDesign(name="round", law=law, pair=pair))
+    >>> result.motion([0.0, 1.0])["ratio"].round(4)
+    array([0.5, 0.5])
+    """
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return i21 = z1/z2 for `lobes`, to `tolerances`."""

@@ -23,6 +23,15 @@ class Ellipse:
     A*e*cos(n1*phi1))``, ``b = A - w`` (w = 1 for a wheel as mate, -1 for a ring), and its integral
     over a lobe is the driven wheel's where ``b^2 - (A*e)^2 = (n2/n1)^2``. For one lobe each,
     ``A = 2*a``: two equal ellipses.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.laws.Ellipse(eccentricity=0.3)
+    >>> pair = gc.PairSpec(teeth=(30, 30), module=2.0)
+    >>> result = gc.build(gc.GearPairDesign(name="ellipse", law=law, pair=pair))
+    >>> result.motion([0.0, 3.141592653589793])["ratio"].round(4)
+    array([0.5385, 1.8571])
     """
 
     eccentricity: float = param(

@@ -57,6 +57,15 @@ class Formula(ShortRepr):
     In Python each may be a function of phi1, rad, or a tuple of a function and its first
     derivatives. With `driver_travel` and `driven_travel` the pair is open; phi2 itself gives the
     latter, which then may be left out.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.laws.Formula(phi2="phi1 - 0.08*sin(2*phi1)")
+    >>> pair = gc.PairSpec(teeth=(30, 30), module=2.0)
+    >>> result = gc.build(gc.GearPairDesign(name="formula", law=law, pair=pair))
+    >>> result.motion([0.0, 1.0])["ratio"].round(4)
+    array([0.84  , 1.0666])
     """
 
     phi2: Given | None = param(
@@ -202,6 +211,15 @@ class RackLaw(ShortRepr):
     In Python either may be a function of phi1, rad, or a tuple with its first derivatives.
     The rack moves by ``dy = r1*dphi1``, so that ``r1 = y'``; its centrode is the curve ``(r1, y)``,
     straight only for a circular wheel. The ratio of the law is r1, its phi2 is y.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.laws.RackLaw(r1="1 + 0.2*cos(phi1)")
+    >>> pair = gc.PairSpec(teeth=(30, 30), module=2.0)
+    >>> result = gc.build(gc.GearPairDesign(name="rack", law=law, pair=pair))
+    >>> result.motion([0.0, 1.0])["velocity_mm_per_rad"].round(4)
+    array([35.6427, 32.9119])
     """
 
     r1: Given | None = param(

@@ -127,6 +127,15 @@ class Phases(ShortRepr):
 
     With `driven_travel` the pair is open: first and last ratio may differ, and one ratio or one
     knot may be solved so that the driven wheel turns by its travel, or the travel itself.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.laws.Phases(knots=(0.0, 2.0, 6.283185307179586), ratios=(1.6, "solve", 1.6))
+    >>> pair = gc.PairSpec(teeth=(30, 30), module=2.0)
+    >>> result = gc.build(gc.GearPairDesign(name="phases", law=law, pair=pair))
+    >>> result.motion([0.0, 2.0])["ratio"].round(4)
+    array([1.6, 0.4])
     """
 
     shape: str = param(

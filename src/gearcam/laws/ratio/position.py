@@ -34,6 +34,17 @@ class MotionLaw(ShortRepr):
     from `driver_travel` and `driven_travel`, or from closure. With slide(phi1) the driven wheel
     turns with the crank. In Python y and slide may be functions, or tuples of a function and its
     first derivatives.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.laws.MotionLaw(
+    ...     y="x + x**2/10", x_from=0.0, x_to=2.0, driver_travel=3.0, driven_travel=3.0
+    ... )
+    >>> pair = gc.PairSpec(teeth=(30, 30), module=2.0)
+    >>> result = gc.build(gc.GearPairDesign(name="position", law=law, pair=pair))
+    >>> result.motion([0.0, 1.0])["ratio"].round(4)
+    array([0.8333, 0.9444])
     """
 
     y: Given | None = param(

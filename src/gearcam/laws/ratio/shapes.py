@@ -28,6 +28,15 @@ class BSplineLaw(ShortRepr):
 
     Control value k belongs to the angle ``k/n`` of a lobe; the curve stays within neighbouring
     control values, each of which changes the centrode only near its angle.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.laws.BSplineLaw(radii=(2.0, 2.1, 2.3, 2.1))
+    >>> pair = gc.PairSpec(teeth=(30, 30), module=2.0)
+    >>> result = gc.build(gc.GearPairDesign(name="spline", law=law, pair=pair))
+    >>> result.motion([0.0, 1.0])["ratio"].round(4)
+    array([0.9154, 0.9471])
     """
 
     radii: Row = param(
@@ -57,6 +66,15 @@ class RoundedPolygon(ShortRepr):
     With the corner radius c and the distance h of a side from the shaft, both over the centre
     distance, the sides are ``h/cos(phi1)`` and the corners circles of radius c about a point at
     ``d = (h - c)/cos(pi/n)``. Closure gives h.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.laws.RoundedPolygon(corners=4, corner_radius=0.2)
+    >>> pair = gc.PairSpec(teeth=(40, 40), module=2.0)
+    >>> result = gc.build(gc.GearPairDesign(name="square", law=law, pair=pair))
+    >>> result.motion([0.0, 1.0])["ratio"].round(4)
+    array([0.8229, 1.1391])
     """
 
     corners: int = param(COUNT, ge=3, le=100, doc="corners of the driver, a multiple of its lobes")

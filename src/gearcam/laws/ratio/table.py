@@ -59,6 +59,18 @@ class TableLaw(FromFile):
     The curve through the points is C2 and monotonic wherever they are. A ratio is scaled so that it
     closes, a driven angle must close, and a radius (at any scale) gives the centre distance.
     With `driven_travel` the pair is open; driven angles themselves give it.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> law = gc.laws.TableLaw(
+    ...     phi1=(0.0, 1.0, 2.0, 3.0, 4.3, 5.3, 6.2831853),
+    ...     ratio=(1.2, 1.1, 0.9, 0.8, 0.9, 1.1, 1.2),
+    ... )
+    >>> pair = gc.PairSpec(teeth=(30, 30), module=2.0)
+    >>> result = gc.build(gc.GearPairDesign(name="table", law=law, pair=pair))
+    >>> result.motion([0.0, 1.0])["ratio"].round(4)
+    array([1.2114, 1.1105])
     """
 
     file: str | None = param(
