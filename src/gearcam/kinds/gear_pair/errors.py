@@ -17,7 +17,7 @@ from gearcam.base.numerals import formatted
 from gearcam.base.quantities import ARCSEC
 from gearcam.meshing.assembly import Assembly, alone, demand, given, random_assemblies
 from gearcam.meshing.error_checks import TRANSMISSION
-from gearcam.meshing.errors import Running, cycle, largest, of_error, run
+from gearcam.meshing.errors import Running, Runs, cycle, largest, of_error
 from gearcam.meshing.settings import ERRORS
 from gearcam.numeric.arrays import as_complex
 from gearcam.numeric.bulges import flatten_bulges
@@ -91,7 +91,7 @@ def study_errors(result: GearPairResult, progress: Progress) -> StudyResult:
 
     with result.stage("errors"):
         phi1 = cycle(gears, spec.steps, alike=every.alike and spec.alike)
-        assembled = partial(run, steps, width, phi1=phi1)
+        assembled = Runs(steps=steps, width=width, phi1=phi1).of
         report(0)
         without, together = assembled(Assembly()), assembled(every)
         limit = limit_of(ERRORS, TRANSMISSION, limits) if not result.pair.on_rack else math.inf
