@@ -28,6 +28,9 @@ def add_options(study: Study, parser: argparse.ArgumentParser) -> None:
         What they are added to.
     """
     kinds = _kinds_with(study)
+    if study.parallel:
+        words = "number of processes of the random assemblies (default: 1)"
+        parser.add_argument("--jobs", type=int, metavar="N", help=words)
     number = "+" if study.many else None
     parser.add_argument("designs", nargs=number, metavar="FILE", help="design file (TOML)")
     add_output(parser)
@@ -64,11 +67,12 @@ def run(study: Study, options: Options) -> int:
     settings = dict(options)
     files = settings.pop("designs")
     output, debug = settings.pop("output"), settings.pop("debug")
+    jobs = settings.pop("jobs", None) or 1
     return each_result(
         files if study.many else [files],
         lambda file: studied(study, load(file), settings),
         study.done,
-        lambda result, progress: result.study(study.name, progress).write(output),
+        lambda result, progress: result.study(study.name, progress, jobs=jobs).write(output),
         debug=debug,
     )
 

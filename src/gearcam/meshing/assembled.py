@@ -233,7 +233,7 @@ class Phases(ShortRepr):
     def _refined(
         self, pairs: FlankPairs, step: Ints, apart: Array, rolls: Array
     ) -> tuple[list[Array], Mask]:
-        """Bring `rolls`, (3, n), to the common normals of pairs that are `apart` by errors of pitch.
+        """Bring `rolls`, (3, n), to the common normals of pairs `apart` by errors of pitch.
 
         Returns
         -------

@@ -235,7 +235,10 @@ def touches(pairs: FlankPairs, phi1: ArrayLike) -> Touches:
     inner = np.flatnonzero((falling[rows, left] > 0.0) & (falling[rows, right] <= 0.0))
     extreme, some = turn[rows, best], faced.select(inner)
     at = bracketed_root(
-        lambda x: some.compare(x)[1], angle[inner, left[inner]], angle[inner, right[inner]], _EXTREME
+        lambda x: some.compare(x)[1],
+        angle[inner, left[inner]],
+        angle[inner, right[inner]],
+        _EXTREME,
     )
     extreme[inner] = -pairs.side * some.compare(at)[0]
     return Touches(
