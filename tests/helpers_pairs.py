@@ -19,7 +19,7 @@ from gearcam.gears.spec import PairSpec, Rack, RingSpec
 from gearcam.gears.track import Wheel
 from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
 from gearcam.kinds.gear_pair.result import GearPairResult
-from gearcam.meshing.assembly import Assembly, Gears
+from gearcam.meshing import assembly as errors_of
 from gearcam.meshing.errors import Running, Runs
 from gearcam.meshing.study import Setup
 from gearcam.numeric.arrays import Array
@@ -194,6 +194,8 @@ def dense_touch(
     return -side * max(ahead)
 
 
-def run(steps: Sequence[Gears], width: float, assembly: Assembly, phi1: Array) -> Running:
+def run(
+    steps: Sequence[errors_of.Gears], width: float, assembly: errors_of.Assembly, phi1: Array
+) -> Running:
     """Return how one assembly of wheels, of stepped ones those of each step, runs."""
     return Runs(steps=steps, width=width, phi1=phi1).of(assembly)

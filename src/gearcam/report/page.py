@@ -145,7 +145,7 @@ def sweep_page(title: str, words: Mapping[str, Any], content: Mapping[str, Any])
         ``lines`` at the top, ``reasons`` of refusals with their numbers, and names of ``constant``
         facts.
     content : mapping
-        Data for the script (see `gearcam.sweep.page`).
+        Data for the script (see `gearcam.sweeps.page`).
 
     Returns
     -------

@@ -178,7 +178,7 @@ class StudyResult(NotebookView):
         written = {
             name: table_bytes(one) for name, one in {self.file: self.table, **tables}.items()
         }
-        return written | self.pages
+        return {**written, **self.pages}
 
     def to_dict(self) -> dict[str, Any]:
         """Return the content of ``summary.json`` without files (see `Result.to_dict`)."""

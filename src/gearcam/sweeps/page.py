@@ -21,7 +21,7 @@ from gearcam.base.facts import text_of
 from gearcam.designs.design import Design, path_of
 from gearcam.designs.writing import least_document, toml_text, value_text
 from gearcam.report.page import sweep_page
-from gearcam.sweep.rows import Built
+from gearcam.sweeps.rows import Built
 
 PAGE: Final = "sweep.html"
 """Name of the file."""
