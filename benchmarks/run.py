@@ -66,6 +66,7 @@ def main() -> int:
         spatial_cases.of_globoidal_cams,
         linkage_cases.of_linkages,
         load_cases.of_loads,
+        load_cases.of_assemblies,
         load_cases.of_machines,
         load_cases.of_dynamics,
         dynamics_cases.against_peers,

@@ -16,14 +16,14 @@ from typing import Any
 
 import gearcam
 from gearcam.designs.design import Design
-from gearcam.sweep.axes import axes_of
-from gearcam.sweep.cluster import Cluster
-from gearcam.sweep.engine import Engine, run
-from gearcam.sweep.log import Log
-from gearcam.sweep.plan import Plan
-from gearcam.sweep.pool import Processes
-from gearcam.sweep.rows import Built, measured
-from gearcam.sweep.tables import write_tables
+from gearcam.sweeps.axes import axes_of
+from gearcam.sweeps.cluster import Cluster
+from gearcam.sweeps.engine import Engine, missing_rows
+from gearcam.sweeps.log import Log
+from gearcam.sweeps.plan import Plan
+from gearcam.sweeps.pool import Processes
+from gearcam.sweeps.rows import Built, measured
+from gearcam.sweeps.tables import write_tables
 from measuring import ROOT, Result, Timing, show, table
 
 PAIR = ROOT / "profiles" / "ellipse.toml"
@@ -130,7 +130,8 @@ def _pairs(own: float) -> Result:
 
     with tempfile.TemporaryDirectory() as folder, Log(folder, plan.head) as log:
         with _watched() as watched:
-            run(plan, log, Processes(jobs=2), progress)
+            for _ in missing_rows(plan, log, Processes(jobs=2)):
+                progress(len(log), plan.count)
         begin = time.perf_counter()
         write_tables(log, Path(folder))
         tables = time.perf_counter() - begin
@@ -250,7 +251,8 @@ def _timed(engine: Engine, count: int) -> float:
     plan = _plan(count)
     with tempfile.TemporaryDirectory() as folder, Log(folder, plan.head) as log:
         start = time.perf_counter()
-        run(plan, log, engine)
+        for _ in missing_rows(plan, log, engine):
+            pass
         return time.perf_counter() - start
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 from typing import Any
@@ -18,7 +19,10 @@ from gearcam.gears.spec import PairSpec, Rack, RingSpec
 from gearcam.gears.track import Wheel
 from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
 from gearcam.kinds.gear_pair.result import GearPairResult
+from gearcam.meshing import assembly as errors_of
+from gearcam.meshing.errors import Running, Runs
 from gearcam.meshing.study import Setup
+from gearcam.numeric.arrays import Array
 from gearcam.parts.blank import Blank
 from helpers_built import built
 
@@ -188,3 +192,10 @@ def dense_touch(
         turn = np.angle(one[inside] * middle) - mate
         ahead.append((hand * side * turn).max())
     return -side * max(ahead)
+
+
+def run(
+    steps: Sequence[errors_of.Gears], width: float, assembly: errors_of.Assembly, phi1: Array
+) -> Running:
+    """Return how one assembly of wheels, of stepped ones those of each step, runs."""
+    return Runs(steps=steps, width=width, phi1=phi1).of(assembly)

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 import gearcam as gc
-from gearcam.sweep.rows import Built
+from gearcam.sweeps.rows import Built
 
 BASE = gc.load(Path(__file__).parent.parent / "profiles" / "ellipse.toml")
 

@@ -206,14 +206,14 @@ _COMMANDS: Final = (
     Command(
         "sweep",
         "Build thousands of variants of a design; write DIR/sweep.csv and sweep.html.",
-        deferred("gearcam.sweep.command:sweep"),
-        deferred("gearcam.sweep.command:arguments"),
+        deferred("gearcam.sweeps.command:sweep"),
+        deferred("gearcam.sweeps.command:arguments"),
     ),
     Command(
         "optimize",
         "Search the best of a design's variants; write DIR/best.toml and optimize.html.",
-        deferred("gearcam.sweep.optimize:optimize"),
-        deferred("gearcam.sweep.optimize:arguments"),
+        deferred("gearcam.sweeps.optimize:optimize"),
+        deferred("gearcam.sweeps.optimize:arguments"),
     ),
     Command(
         "view",

@@ -29,6 +29,9 @@ def add_options(study: Study, parser: argparse.ArgumentParser) -> None:
         What they are added to.
     """
     kinds = _kinds_with(study)
+    if study.parallel:
+        words = "number of processes of the random assemblies (default: 1)"
+        parser.add_argument("--jobs", type=int, metavar="N", help=words)
     number = "+" if study.many else None
     words = f"design file (TOML); {STDIN} is the standard input"
     parser.add_argument("designs", nargs=number, metavar="FILE", help=words)
@@ -68,11 +71,12 @@ def run(study: Study, options: Options) -> int:
     files = settings.pop("designs")
     output, debug, as_json = (settings.pop(name) for name in ("output", "debug", "json"))
     del settings["quiet"]
+    jobs = settings.pop("jobs", None) or 1
     return each_result(
         files if study.many else [files],
         lambda file: studied(study, load(file), settings),
         study.done,
-        lambda result, progress: result.study(study.name, progress).write(output),
+        lambda result, progress: result.study(study.name, progress, jobs=jobs).write(output),
         debug=debug,
         as_json=as_json,
     )

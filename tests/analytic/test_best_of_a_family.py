@@ -23,12 +23,12 @@ import pytest
 
 import gearcam as gc
 from gearcam.numeric.arrays import Array
-from gearcam.sweep.axes import axes_of
-from gearcam.sweep.log import Log
-from gearcam.sweep.methods import Quest, Spent, minimized, usual
-from gearcam.sweep.optimum import Trials
-from gearcam.sweep.plan import Plan
-from gearcam.sweep.rows import Built, measured
+from gearcam.sweeps.axes import axes_of
+from gearcam.sweeps.log import Log
+from gearcam.sweeps.methods import Quest, Spent, minimized, usual
+from gearcam.sweeps.optimum import Trials
+from gearcam.sweeps.plan import Plan
+from gearcam.sweeps.rows import Built, measured
 
 
 @dataclass

@@ -9,9 +9,9 @@ from statistics import NormalDist
 import numpy as np
 
 import gearcam as gc
-from gearcam.sweep.axes import axes_of
-from gearcam.sweep.plan import Plan
-from gearcam.sweep.rows import measured
+from gearcam.sweeps.axes import axes_of
+from gearcam.sweeps.plan import Plan
+from gearcam.sweeps.rows import measured
 from helpers_pairs import PROFILES
 
 FILE = PROFILES / "valve_tolerances.toml"

@@ -20,8 +20,8 @@ from gearcam.compare.variants import variants_of
 from gearcam.pictures.charts import Chart, Line
 from gearcam.report.file import solids_shown
 from gearcam.report.page import charts_page, document, page
-from gearcam.sweep.page import page as swept
-from gearcam.sweep.rows import measured
+from gearcam.sweeps.page import page as swept
+from gearcam.sweeps.rows import measured
 from helpers_browser import LAPTOP, open_page
 from helpers_pairs import PROFILES
 from helpers_print import Sheet, filled, found, outside, overlaps, printed

@@ -17,8 +17,8 @@ from selenium.webdriver.remote.webelement import WebElement
 from selenium.webdriver.support.select import Select
 
 import gearcam as gc
-from gearcam.sweep.page import page
-from gearcam.sweep.rows import Built, measured
+from gearcam.sweeps.page import page
+from gearcam.sweeps.rows import Built, measured
 from helpers_browser import PHONE, open_page, settle, unfold, until
 from helpers_sweep import BASE
 

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any, Final, Self
 
 from fuzz.outcome import FAILED, LATE, Failure, Outcome, Task
-from gearcam.sweep.pool import Crew
-from gearcam.sweep.rows import Built
+from gearcam.sweeps.pool import Crew
+from gearcam.sweeps.rows import Built
 
 SECONDS: Final = 90.0
 """Time allowed for a trial, s: far more than one takes, so that a busy machine is no failure."""

@@ -17,11 +17,11 @@ from gearcam.gears.contact import COAST, DRIVE, Mounting, flank_pairs
 from gearcam.meshing.assembly import Assembly
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.edges import first_touch, touches
-from gearcam.meshing.errors import cycle, largest, of_error, run
+from gearcam.meshing.errors import cycle, largest, of_error
 from gearcam.meshing.half_teeth import half_teeth
 from gearcam.meshing.overlap import Turning
 from helpers_built import built
-from helpers_pairs import profile
+from helpers_pairs import profile, run
 from helpers_sampling import few
 
 ALPHA = math.radians(20)

@@ -17,12 +17,12 @@ import gearcam as gc
 from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.gears.contact import COAST, DRIVE, Mounting, flank_pairs
 from gearcam.meshing.assembly import Assembly
-from gearcam.meshing.errors import cycle, run
+from gearcam.meshing.errors import cycle
 from gearcam.meshing.half_teeth import HalfTeeth, half_teeth
 from gearcam.meshing.measured import as_half_teeth, chord_error, demand_near, outline_leads
 from gearcam.meshing.overlap import Turning
 from helpers_built import built
-from helpers_pairs import profile
+from helpers_pairs import profile, run
 from helpers_sampling import chosen, few
 
 CHORD = 1e-3

@@ -16,11 +16,11 @@ from gearcam.gears.contact import DRIVE
 from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.meshing.assembly import Assembly
 from gearcam.meshing.contact import contacts
-from gearcam.meshing.errors import run
 from gearcam.meshing.solids import bodies, tilted
 from gearcam.meshing.study import Setup, mount, phases
 from gearcam.parts.solids import Prisms
 from helpers_built import built
+from helpers_pairs import run
 from helpers_sampling import few
 
 WIDTH = 10.0
@@ -155,9 +155,7 @@ def test_solids_bear_at_the_face_where_flanks_touch_first(name: str) -> None:
     assert isinstance(design, GearPairDesign)
     result = gc.build(design.with_({"meshing.solids": False}))  # a tilt asks for solids by itself
     phi1, tilt = np.linspace(0.0, 1.0, 5), Assembly(tilt=math.radians(0.2) + 0j)
-    low, high = (
-        section.lead(DRIVE, phi1) for section in run([result.gears], 8.0, tilt, phi1).sections
-    )
+    low, high = (section.lead(DRIVE) for section in run([result.gears], 8.0, tilt, phi1).sections)
     front = bool(np.all(high > low))  # the driver pushes the driven wheel ahead
     assert front == (name == "ring_ellipse")
     rows = result.mesh().columns

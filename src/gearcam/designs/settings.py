@@ -32,4 +32,6 @@ def value_of(word: str) -> Any:
 
 def listed_twice(values: list[Any]) -> list[Any]:
     """Return the values that are in a list before."""
+    if all(isinstance(one, float | int | str) for one in values) and len({*values}) == len(values):
+        return []  # at once, however many
     return [one for k, one in enumerate(values) if one in values[:k]]

@@ -20,13 +20,9 @@ from numpy.typing import ArrayLike
 
 from gearcam.base.display import ShortRepr
 from gearcam.gears.contact import FlankPairs, touch
-from gearcam.gears.track import WHEELS, Wheel
 from gearcam.meshing.contact import Contacts, outermost
-from gearcam.meshing.edges import Facing, facing, of_leading_pair
+from gearcam.meshing.edges import Facing, ends_of, facing, of_leading_pair
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
-
-_TIP = 1
-"""Index of the tip among the ends of a flank: root first."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -96,16 +92,12 @@ def about_to_touch(pairs: FlankPairs, phi1: ArrayLike, found: Contacts, largest:
     phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
     faced, heights = facing(pairs, phi1)
     apart = ~_among(faced, found)
-    faced, heights = faced.select(apart), heights[..., apart]
-    ends = [_ends(faced, heights, wheel) for wheel in WHEELS]
-    row, edge_of, tip, angles = (np.concatenate(each, axis=-1) for each in zip(*ends, strict=True))
-    some = faced.select(row)
-    (one, along), (two, other) = (
-        some.at(wheel, angle, unit=True) for wheel, angle in zip(WHEELS, angles, strict=True)
-    )
-    lead = pairs.guide.turn(one, two)
+    met = ends_of(faced.select(apart), heights[..., apart])
+    some, edge_of, angles, tip = met.faced, met.edge_of, met.angles, met.tip
+    (one, _), (along, other) = met.points, met.directions
+    lead = met.turn
     outward = -pairs.side * lead
-    first = outermost(some.step, some.pair, outward, np.ones(len(row), dtype=bool))
+    first = outermost(some.step, some.pair, outward, np.ones(len(lead), dtype=bool))
     ahead = np.maximum(
         of_leading_pair(pairs.side, len(phi1), found.step, found.lead),
         of_leading_pair(pairs.side, len(phi1), some.step[first], lead[first]),
@@ -138,37 +130,6 @@ def _among(faced: Facing, found: Contacts) -> Mask:
     place -= place.min(initial=0)
     key = np.concatenate([faced.step, found.step]) * (place.max(initial=0) + 1) + place
     return np.isin(key[: len(faced.pair)], key[len(faced.pair) :])
-
-
-def _ends(faced: Facing, heights: Array, wheel: Wheel) -> tuple[Ints, Ints, Mask, Array]:
-    """Return the ends of a wheel's flanks at heights of the mate's flank.
-
-    Parameters
-    ----------
-    faced : Facing
-        Pairs.
-    heights : (2, 2, n) array, mm
-        Heights of root and tip of both flanks.
-    wheel : {1, 2}
-        The wheel.
-
-    Returns
-    -------
-    row : (k,) int array
-        Numbers of the pairs.
-    edge_of : (k,) int array
-        The wheel.
-    tip : (k,) bool array
-        Whether the end is the tip.
-    angles : (2, k) array, rad
-        Driver angles of the points that meet, on driver and driven wheel.
-    """
-    own, mate = heights[wheel - 1], heights[2 - wheel]
-    end, row = np.nonzero((own >= mate.min(axis=0)) & (own <= mate.max(axis=0)))
-    angle, some = faced.ends[wheel - 1, end, row], faced.select(row)
-    met = some.level(2 if wheel == 1 else 1, own[end, row], angle)
-    angles = np.stack([angle, met] if wheel == 1 else [met, angle])
-    return row, np.full(len(row), wheel), end == _TIP, angles
 
 
 def _curvature(some: Facing, edge_of: Ints, angles: Array) -> Array:

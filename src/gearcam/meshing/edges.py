@@ -17,6 +17,8 @@ Flanks only: contact of an edge with the mate's fillet is found by the stepwise 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -46,6 +48,9 @@ _ROUNDINGS = 8.0
 
 _LEAST_LEVER = 1e-3
 """Least lever arm of a normal over that of the pitch line, where the rounding is estimated."""
+
+_TIP = 1
+"""Place of the tip among the ends of a flank."""
 
 _BETWEEN = np.linspace(0.02, 0.98, 9)
 """Positions in a stretch, as shares of it, at which edge contact is tested."""
@@ -142,28 +147,56 @@ def facing(pairs: FlankPairs, phi1: Array) -> tuple[Facing, Array]:
         Heights of root and tip of both flanks.
     """
     step, pair = pairs.beside(phi1)
+    every = placed(pairs, phi1, step, pair)
+    heights = heights_of(every)
+    apart = np.abs(every.sf[0] - pairs.track.arc_length(phi1)[step])
+    shared = common(heights) & (apart < 2.0 * pairs.pitch)
+    return every.select(shared), heights[..., shared]
+
+
+def placed(pairs: FlankPairs, phi1: Array, step: Ints, pair: Ints) -> Facing:
+    """Return pairs at phases, the driven wheel at its nominal position.
+
+    Parameters
+    ----------
+    pairs : FlankPairs
+        The side.
+    phi1 : (n,) array, rad
+        Phases.
+    step, pair : (k,) int arrays
+        Numbers of phases; j.
+
+    Returns
+    -------
+    Facing
+    """
     pose = pairs.guide.pose(pairs.guide.nominal(phi1)[step])
-    every = Facing(
+    return Facing(
         pairs=pairs,
         step=step,
         pair=pair,
         turn=np.stack([np.exp(-1j * phi1[step]), pose.rotation]),
         offset=np.stack([np.full_like(pose.shift, -pairs.distance), pose.shift]),
     )
-    heights = np.stack(
+
+
+def heights_of(faced: Facing) -> Array:
+    """Return the heights of root and tip of both flanks of n pairs, (2, 2, n) mm."""
+    return np.stack(
         [
-            [pairs.guide.height(every.at(wheel, end, unit=True)[0]) for end in ends]
-            for wheel, ends in zip(WHEELS, every.ends, strict=True)
+            [faced.pairs.guide.height(faced.at(wheel, end, unit=True)[0]) for end in ends]
+            for wheel, ends in zip(WHEELS, faced.ends, strict=True)
         ]
     )
+
+
+def common(heights: Array) -> Mask:
+    """Return which pairs share a range of `heights`, (2, 2, n) mm."""
     (highest, lowest), (root, tip) = heights
-    apart = np.abs(every.sf[0] - pairs.track.arc_length(phi1)[step])
-    shared = np.minimum(highest, tip) > np.maximum(lowest, root)
-    shared &= apart < 2.0 * pairs.pitch
-    return every.select(shared), heights[..., shared]
+    return np.minimum(highest, tip) > np.maximum(lowest, root)
 
 
-def touches(pairs: FlankPairs, phi1: ArrayLike, *, exact: bool = True) -> Touches:
+def touches(pairs: FlankPairs, phi1: ArrayLike) -> Touches:
     """Return the first contacts of a side's pairs at phases.
 
     Parameters
@@ -172,9 +205,6 @@ def touches(pairs: FlankPairs, phi1: ArrayLike, *, exact: bool = True) -> Touche
         The side.
     phi1 : (n,) array, rad
         Phases.
-    exact : bool
-        Whether to find the extremes inside flanks, too, not only whether they are inside: edges
-        are exact in any case, and `gearcam.meshing.contact` finds the others.
 
     Returns
     -------
@@ -204,17 +234,136 @@ def touches(pairs: FlankPairs, phi1: ArrayLike, *, exact: bool = True) -> Touche
     right = np.where(falling[rows, best] > 0.0, after, best)
     inner = np.flatnonzero((falling[rows, left] > 0.0) & (falling[rows, right] <= 0.0))
     extreme, some = turn[rows, best], faced.select(inner)
-    if exact:
-        at = bracketed_root(
-            lambda x: some.compare(x)[1],
-            angle[inner, left[inner]],
-            angle[inner, right[inner]],
-            _EXTREME,
-        )
-        extreme[inner] = -pairs.side * some.compare(at)[0]
+    at = bracketed_root(
+        lambda x: some.compare(x)[1],
+        angle[inner, left[inner]],
+        angle[inner, right[inner]],
+        _EXTREME,
+    )
+    extreme[inner] = -pairs.side * some.compare(at)[0]
     return Touches(
         step=faced.step, pair=faced.pair, turn=-pairs.side * extreme, edge=~np.isin(rows, inner)
     )
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class EndsMeeting:
+    """Ends of flanks at the heights of the mate's flank, one entry each.
+
+    Parameters
+    ----------
+    faced : Facing
+        The pairs: n entries, some pairs more than once.
+    edge_of : (n,) int array
+        The wheel of the end.
+    tip : (n,) bool array
+        Whether the end is the tip.
+    angles : (2, n) array, rad
+        Driver angles of the points that meet, on driver and driven wheel.
+    points, directions : (2, n) complex arrays, mm and 1
+        These points, and unit vectors along the flanks, at the nominal position of the driven
+        wheel, relative to its guide.
+    """
+
+    faced: Facing
+    edge_of: Ints
+    tip: Mask
+    angles: Array
+    points: Plane
+    directions: Plane
+
+    @cached_property
+    def turn(self) -> Array:
+        """The driven wheel's turn from its nominal position until they meet, (n,), rad or mm."""
+        return self.faced.pairs.guide.turn(*self.points)
+
+
+def ends_meeting(pairs: FlankPairs, phi1: Array) -> EndsMeeting:
+    """Return where the ends of a side's flanks meet the mate's flank.
+
+    Parameters
+    ----------
+    pairs : FlankPairs
+        The side.
+    phi1 : (n,) array, rad
+        Phases.
+
+    Returns
+    -------
+    EndsMeeting
+        Of each pair with common heights both ends of these.
+    """
+    return ends_of(*facing(pairs, phi1))
+
+
+def ends_of(faced: Facing, heights: Array, upper: Mask | None = None) -> EndsMeeting:
+    """Return where the ends of pairs of flanks meet the mate's flank.
+
+    Parameters
+    ----------
+    faced : Facing
+        n pairs.
+    heights : (2, 2, n) array, mm
+        Heights of root and tip of both flanks.
+    upper : (n,) bool array, optional
+        Which end of the common heights is asked for; both by default.
+
+    Returns
+    -------
+    EndsMeeting
+    """
+    ends = [_ends(faced, heights, wheel, upper) for wheel in WHEELS]
+    row, edge_of, tip, angles = (np.concatenate(each, axis=-1) for each in zip(*ends, strict=True))
+    some = faced.select(row)
+    (one, along), (two, other) = (
+        some.at(wheel, angle, unit=True) for wheel, angle in zip(WHEELS, angles, strict=True)
+    )
+    return EndsMeeting(
+        faced=some,
+        edge_of=edge_of,
+        tip=tip,
+        angles=angles,
+        points=np.stack([one, two]),
+        directions=np.stack([along, other]),
+    )
+
+
+def _ends(
+    faced: Facing, heights: Array, wheel: Wheel, upper: Mask | None
+) -> tuple[Ints, Ints, Mask, Array]:
+    """Return the ends of a wheel's flanks at heights of the mate's flank.
+
+    Parameters
+    ----------
+    faced : Facing
+        Pairs.
+    heights : (2, 2, n) array, mm
+        Heights of root and tip of both flanks.
+    wheel : {1, 2}
+        The wheel.
+    upper : (n,) bool array, optional
+        See `ends_of`.
+
+    Returns
+    -------
+    row : (k,) int array
+        Numbers of the pairs.
+    edge_of : (k,) int array
+        The wheel.
+    tip : (k,) bool array
+        Whether the end is the tip.
+    angles : (2, k) array, rad
+        Driver angles of the points that meet, on driver and driven wheel.
+    """
+    own, mate = heights[wheel - 1], heights[2 - wheel]
+    there = (own >= mate.min(axis=0)) & (own <= mate.max(axis=0))
+    if upper is not None:  # the driver's tips are low, the driven wheel's high
+        there &= np.stack([upper, ~upper] if wheel == 1 else [~upper, upper])
+    end, row = np.nonzero(there)
+    angle, some = faced.ends[wheel - 1, end, row], faced.select(row)
+    met = some.level(2 if wheel == 1 else 1, own[end, row], angle)
+    angles = np.stack([angle, met] if wheel == 1 else [met, angle])
+    return row, np.full(len(row), wheel), end == _TIP, angles
 
 
 def first_touch(pairs: FlankPairs, phi1: Array, found: Contacts) -> tuple[Array, Mask]:
@@ -240,15 +389,16 @@ def first_touch(pairs: FlankPairs, phi1: Array, found: Contacts) -> tuple[Array,
     Notes
     -----
     Evenly spaced flanks of a side lie on curves that all touch together, so that no edge can be
-    ahead of a tangency. Otherwise edges are searched.
+    ahead of a tangency. Otherwise both ends of the common heights of each pair are tried: no flank
+    can lie behind them, and one of them touches first if the pair has no common normal. Where the
+    curvature jumps an end may be ahead of a common normal.
     """
     outward = of_leading_pair(pairs.side, len(phi1), found.step, found.lead)
     searched = np.flatnonzero(~np.isfinite(outward)) if pairs.even else np.arange(len(phi1))
     ends = np.full(len(phi1), -np.inf)
     if searched.size:
-        some = touches(pairs, phi1[searched], exact=False)
-        step, turn = searched[some.step[some.edge]], some.turn[some.edge]
-        ends = of_leading_pair(pairs.side, len(phi1), step, turn)
+        met = ends_meeting(pairs, phi1[searched])
+        ends = of_leading_pair(pairs.side, len(phi1), searched[met.faced.step], met.turn)
     lead = -pairs.side * np.maximum(outward, ends)
     return np.where(np.abs(lead) <= known_to(pairs, phi1), 0.0, lead), ends > outward
 
@@ -314,17 +464,53 @@ def known_to(pairs: FlankPairs, phi1: Array) -> Array:
         centrode is long and the shafts are apart, and that of driver angles. It moves a flank along
         its normal, and so turns the driven wheel by as much over the lever arm of the normal.
     """
-    guide, one = pairs.guide, pairs.wheels[0].toothing
-    frames = one.frames(phi1, curved=False)
-    size = pairs.track.length + abs(pairs.distance)
-    turn = np.maximum(np.abs(phi1), 2.0 * np.pi)
-    moved = _ROUNDINGS * np.finfo(float).eps * (size + turn * frames.speed)
-    tangent = frames.t * np.exp(-1j * phi1)
-    pitch_point = (np.abs(frames.p) - guide.place).astype(complex)
-    normal = tangent * np.exp(-1j * pairs.side * one.cutter.alpha)
-    lever = np.abs(guide.lever(pitch_point, normal))
+    return rounding_at(pairs, phi1).of(pairs)
+
+
+class Rounding(NamedTuple):
+    """To how much leads are known at phases (see `known_to`).
+
+    Parameters
+    ----------
+    turned : (n,) array, mm
+        Size of what the rounding of driver angles moves.
+    share : (n,) array, rad/mm (for a rack 1)
+        Lead per mm of size.
+    """
+
+    turned: Array
+    share: Array
+
+    def of(self, pairs: FlankPairs) -> Array:
+        """Return to how much the lead is known of `pairs` of these wheels, as mounted."""
+        return self.share * (pairs.track.length + abs(pairs.distance) + self.turned)
+
+
+def rounding_at(pairs: FlankPairs, phi1: Array) -> Rounding:
+    """Return to how much leads are known at phases, rad, of any mounting of a side's wheels."""
+    guide, frames = pairs.guide, pairs.wheels[0].toothing.frames(phi1, curved=False)
+    foot, normal = pitch_points(pairs, phi1)
+    lever = np.abs(guide.lever(foot, normal))
     # at a pressure angle of 90 deg the lever is 0
-    return moved / np.maximum(lever, _LEAST_LEVER * np.abs(guide.lever(pitch_point, tangent)))
+    least = _LEAST_LEVER * np.abs(guide.lever(foot, frames.t * np.exp(-1j * phi1)))
+    turn = np.maximum(np.abs(phi1), 2.0 * np.pi)
+    eps = _ROUNDINGS * np.finfo(float).eps
+    return Rounding(turned=turn * frames.speed, share=eps / np.maximum(lever, least))
+
+
+def pitch_points(pairs: FlankPairs, phi1: Array) -> tuple[Plane, Plane]:
+    """Return the pitch points at phases, rad, and the common normals of flanks as designed.
+
+    Returns
+    -------
+    points, normals : (n,) complex arrays, mm and 1
+        Relative to the guide of the driven wheel.
+    """
+    one = pairs.wheels[0].toothing
+    frames = one.frames(phi1, curved=False)
+    tangent = frames.t * np.exp(-1j * phi1)
+    points = (np.abs(frames.p) - pairs.guide.place).astype(complex)
+    return points, tangent * np.exp(-1j * pairs.side * one.cutter.alpha)
 
 
 @dataclass(frozen=True, kw_only=True)

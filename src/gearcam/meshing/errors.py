@@ -14,7 +14,7 @@ Refused: an error with which the wheels no longer reach each other.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
@@ -24,9 +24,10 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import InfeasibleError
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, Mounting, flank_pairs, turns_of_cycle
+from gearcam.meshing.assembled import Phases
 from gearcam.meshing.assembly import Assembly, Gears
 from gearcam.meshing.contact import contacts
-from gearcam.meshing.edges import first_touch, known_to, to_pitch_line
+from gearcam.meshing.edges import first_touch
 from gearcam.meshing.harmonics import harmonics, too_few
 from gearcam.numeric.arrays import Array, Mask
 from gearcam.numeric.roots import bracketed_root
@@ -115,8 +116,8 @@ class Running(ShortRepr):
         How far the driven wheel would have to turn for them to part, along the pitch curve, when it
         has no room to either side: flanks, tips, roots and fillets.
         """
-        lead, back = _of_side([section.outline_lead for section in self.sections], self.phi1)
-        room = (back - lead) * to_pitch_line(self.driving[0], self.phi1)
+        lead, back = _of_side([section.outline_lead for section in self.sections])
+        room = (back - lead) * self.sections[0].phases[DRIVE].along
         chords = 2.0 * max(section.chord_error for section in self.sections)
         least = int(np.argmin(room))
         if room[least] >= -self.noise - chords / self.sections[0].cosine:
@@ -152,8 +153,9 @@ def cycle(gears: Gears, steps: int, *, alike: bool) -> Array:
     return np.linspace(0.0, pairs.travel * turns, steps * turns, endpoint=not pairs.closed)
 
 
-def run(steps: Sequence[Gears], width: float, assembly: Assembly, phi1: Array) -> Running:
-    """Return how an assembly runs.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Runs(ShortRepr):
+    """How assemblies of a pair run; what is the same for all of them is computed once.
 
     Parameters
     ----------
@@ -161,60 +163,78 @@ def run(steps: Sequence[Gears], width: float, assembly: Assembly, phi1: Array) -
         The wheels; of stepped wheels those of each step.
     width : float, mm
         Face width of all steps.
-    assembly : Assembly
-        Their errors.
     phi1 : (n,) array, rad
         Driver angles.
-
-    Returns
-    -------
-    Running
-
-    Raises
-    ------
-    InfeasibleError
-        If nothing touches at any of these angles.
     """
-    sections = tuple(
-        _Section(gears, assembly, mounting)
-        for number, gears in enumerate(steps)
-        for mounting in assembly.mountings(
-            gears[0].pair.shift,
-            width * (number / len(steps) - 0.5),
-            width * ((number + 1) / len(steps) - 0.5),
+
+    steps: Sequence[Gears]
+    width: float
+    phi1: Array
+
+    def of(self, assembly: Assembly) -> Running:
+        """Return how an assembly runs.
+
+        Parameters
+        ----------
+        assembly : Assembly
+            Its errors.
+
+        Returns
+        -------
+        Running
+
+        Raises
+        ------
+        InfeasibleError
+            If nothing touches at any of these angles.
+        """
+        sections = tuple(
+            _Section(gears, assembly, mounting, self._phases[number])
+            for number, gears in enumerate(self.steps)
+            for mounting in assembly.mountings(gears[0].pair.shift, *self._heights(number))
         )
-    )
-    measured = assembly.measured
-    lead, back = _of_side(
-        [section.outline_lead if measured else section.lead for section in sections], phi1
-    )
-    if not np.isfinite(lead).any():
-        raise InfeasibleError(
-            "with these errors the wheels do not reach each other",
-            where="errors",
-            nearest="give smaller errors",
+        first, measured = sections[0], assembly.measured
+        lead, back = _of_side(
+            [section.outline_lead if measured else section.lead for section in sections]
         )
-    along = to_pitch_line(sections[0].sides[DRIVE], phi1)
-    least, most = float(np.abs(along).min()), float(np.abs(along).max())
-    rounding = max(float(known_to(section.sides[DRIVE], phi1).max()) for section in sections)
-    chords = sections[0].chord_error / sections[0].cosine if measured else 0.0
-    return Running(
-        phi1=phi1,
-        lead=lead,
-        backlash=(back - lead) * along,
-        sections=sections,
-        known_to=rounding + chords / least,
-        unit=sections[0].sides[DRIVE].guide.unit,
-        noise=2.0 * (rounding * most + chords),
-        measured=measured,
-    )
+        if not np.isfinite(lead).any():
+            raise InfeasibleError(
+                "with these errors the wheels do not reach each other",
+                where="errors",
+                nearest="give smaller errors",
+            )
+        along = first.phases[DRIVE].along
+        least, most = float(np.abs(along).min()), float(np.abs(along).max())
+        rounding = max(float(section.known_to.max()) for section in sections)
+        chords = first.chord_error / first.cosine if measured else 0.0
+        return Running(
+            phi1=self.phi1,
+            lead=lead,
+            backlash=(back - lead) * along,
+            sections=sections,
+            known_to=rounding + chords / least,
+            unit=first.phases[DRIVE].designed.guide.unit,
+            noise=2.0 * (rounding * most + chords),
+            measured=measured,
+        )
+
+    def _heights(self, number: int) -> tuple[float, float]:
+        """Return the heights of both faces of a step over the middle of the face width, mm."""
+        count = len(self.steps)
+        return self.width * (number / count - 0.5), self.width * ((number + 1) / count - 0.5)
+
+    @cached_property
+    def _phases(self) -> list[dict[int, Phases]]:
+        return [
+            {side: Phases(gears=gears, side=side, phi1=self.phi1) for side in (DRIVE, COAST)}
+            for gears in self.steps
+        ]
 
 
-def _of_side(leads: Sequence[Callable[[int, Array], Array]], phi1: Array) -> list[Array]:
+def _of_side(leads: Sequence[Callable[[int], Array]]) -> list[Array]:
     """Return the leads at first contact of both sides in any of some sections."""
     return [
-        -side * np.max([-side * lead(side, phi1) for lead in leads], axis=0)
-        for side in (DRIVE, COAST)
+        -side * np.max([-side * lead(side) for lead in leads], axis=0) for side in (DRIVE, COAST)
     ]
 
 
@@ -230,11 +250,14 @@ class _Section:
         Their errors.
     mounting : Mounting
         Where they are.
+    phases : mapping of int to Phases
+        Both sides at the driver angles.
     """
 
     gears: Gears
     assembly: Assembly
     mounting: Mounting
+    phases: Mapping[int, Phases]
 
     @cached_property
     def sides(self) -> dict[int, FlankPairs]:
@@ -272,15 +295,20 @@ class _Section:
         """Cosine of the pressure angle."""
         return math.cos(self.gears[0].toothing.cutter.alpha)
 
-    def lead(self, side: int, phi1: Array) -> Array:
-        """Return the lead at first contact of flanks (see `gearcam.meshing.edges.first_touch`)."""
-        return first_of([self.sides[side]], phi1)[0]
+    @property
+    def known_to(self) -> Array:
+        """To how much leads are known, rad (for a rack mm), at each of the driver angles."""
+        return self.phases[DRIVE].rounding.of(self.sides[DRIVE])
 
-    def outline_lead(self, side: int, phi1: Array) -> Array:
-        """Return the lead at first contact of outlines."""
+    def lead(self, side: int) -> Array:
+        """Return the leads at first contact of flanks."""
+        return self.phases[side].leads(self.mounting)
+
+    def outline_lead(self, side: int) -> Array:
+        """Return the leads at first contact of outlines."""
         from gearcam.meshing.measured import outline_leads
 
-        return outline_leads(self.outlines, self.sides[side], phi1)
+        return outline_leads(self.outlines, self.sides[side], self.phases[side].phi1)
 
 
 def first_of(sections: list[FlankPairs], phi1: Array) -> tuple[Array, Mask]:

@@ -102,6 +102,9 @@ class MeshingSpec(ShortRepr):
 _TRIALS: Final = 100
 """Number of random assemblies unless given."""
 
+_PERCENTILES: Final = (50.0, 90.0, 99.0)
+"""Percentages unless given."""
+
 _PITCH_COLUMNS: Final = ("wheel", "tooth", "pitch_mm")
 """Columns of a file of pitch errors."""
 
@@ -189,9 +192,18 @@ class ErrorsSpec(FromFile):
     seed: int = param(
         COUNT, default=1, ge=0, le=1000000, doc="of the random numbers: the same gives the same"
     )
+    percentiles: tuple[float, ...] = param(
+        default=_PERCENTILES,
+        gt=0,
+        le=100,
+        min_length=1,
+        doc="percentages of the random assemblies whose largest transmission error is told",
+    )
     steps: int = param(
         COUNT, default=360, ge=8, le=100000, doc="number of phases in a turn of the driver"
     )
+
+    rules = (distinct("percentiles", "percentage"),)
 
     @property
     def assemblies(self) -> int:
@@ -232,7 +244,12 @@ class ErrorsSpec(FromFile):
     def problems(self) -> Iterator[Breach]:
         """Yield the faults of a file that cannot be read, and of trials without tolerances."""
         if not any(self.tolerances):
-            usual = {"trials": None, "seed": 1, "distribution": "uniform"}
+            usual = {
+                "trials": None,
+                "seed": 1,
+                "distribution": "uniform",
+                "percentiles": _PERCENTILES,
+            }
             for name in (name for name, one in usual.items() if getattr(self, name) != one):
                 yield name, None, "needs a tolerance", "with center_tolerance_mm, for example"
         for wheel, one in enumerate(self.eccentricity_angle):

@@ -153,7 +153,7 @@ def sweep_page(title: str, words: Mapping[str, Any], content: Mapping[str, Any])
         ``lines`` at the top, ``reasons`` of refusals with their numbers, ``constant`` facts, and
         whether goals are ``sought``: then the best come before all charts but one.
     content : mapping
-        Data for the script (see `gearcam.sweep.page`).
+        Data for the script (see `gearcam.sweeps.page`).
 
     Returns
     -------

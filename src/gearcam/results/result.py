@@ -130,7 +130,7 @@ class Result(Staged):
         asked = (name for name in self.design.output.studies if name not in self._running)
         return {name: self.study(name) for name in asked}
 
-    def study(self, name: str, progress: Progress | None = None) -> StudyResult:
+    def study(self, name: str, progress: Progress | None = None, *, jobs: int = 1) -> StudyResult:
         """Return the outcome of a study with the settings of the design, computed once.
 
         Parameters
@@ -139,6 +139,8 @@ class Result(Staged):
             The name of its command, such as ``mesh``.
         progress : callable, optional
             Called with a stage's name, the stages or steps done and their number.
+        jobs : int
+            Number of processes, for studies that take several: ``errors``.
 
         Returns
         -------
@@ -147,7 +149,7 @@ class Result(Staged):
         Raises
         ------
         DesignError
-            If designs of this kind have no such study.
+            If designs of this kind have no such study, or it takes one process only.
         InfeasibleError
             If the design, or its study, is impossible.
 
@@ -160,12 +162,13 @@ class Result(Staged):
         True
         """
         entry = self.kind.studies[one_of("name", name, self.kind.studies)]
+        taken = entry.processes(jobs)
         outcome = self._studied.get(name)
         if outcome is None or outcome.interrupted:
             entry.demand(self.design)
             self._running.add(name)
             try:
-                outcome = self._studied[name] = entry.compute(self, progress or silent)
+                outcome = self._studied[name] = entry.compute(self, progress or silent, **taken)
             finally:
                 self._running.discard(name)
         return outcome

@@ -9,6 +9,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from gearcam.base.errors import DesignError
+
 if TYPE_CHECKING:
     from gearcam.designs.design import Design
 
@@ -57,6 +59,8 @@ class Study:
         Codes of findings of the design that the study gives anew.
     many : bool
         Whether its command takes several design files.
+    parallel : bool
+        Whether ``compute(result, progress, jobs)`` takes a number of processes.
     settings : type, optional
         The class of that table: of a study of another package, whose table has the study's name.
         Else a field of the design says it.
@@ -76,7 +80,25 @@ class Study:
     alike: bool = True
     repeats: tuple[str, ...] = ()
     many: bool = True
+    parallel: bool = False
     settings: type | None = None
+
+    def processes(self, jobs: int) -> dict[str, int]:
+        """Return the arguments of `compute` for a number of processes.
+
+        Raises
+        ------
+        DesignError
+            If it is not above 0, or the study takes one only.
+        """
+        if isinstance(jobs, bool) or not isinstance(jobs, int) or jobs < 1:
+            raise DesignError.of(
+                "is not a number of processes", key="jobs", value=jobs, allowed="1 or more"
+            )
+        if jobs > 1 and not self.parallel:
+            message = f"the study {self.name} takes one process"
+            raise DesignError.of(message, key="jobs", value=jobs, allowed="1")
+        return {"jobs": jobs} if self.parallel else {}
 
     def __repr__(self) -> str:
         return f'<Study "{self.name}">'

@@ -87,8 +87,10 @@ class StudyResult(NotebookView):
     pace : (n, 2) array or None
         Places of the driver over a cycle, in the unit of the moving picture, increasing, and the
         time at each, s: the motion that this picture can follow.
+    further : mapping of str to mapping
+        Columns of further tables by name, such as ``trials``: the file ``errors_trials.csv``.
     pages : mapping of str to bytes
-        Files beside the table, by name.
+        Other files beside the table, by name.
     lines : tuple of str
         Lines to print in place of its facts.
     interrupted : str
@@ -118,6 +120,7 @@ class StudyResult(NotebookView):
     joints: Callable[[Scene], Iterable[JointForce]] = _no_forces
     coloured: Callable[[], Iterable[ColouredCurve]] = tuple
     pace: Array | None = None
+    further: Mapping[str, Mapping[str, ArrayLike]] = field(default_factory=dict)
     pages: Mapping[str, bytes] = field(default_factory=dict)
     lines: tuple[str, ...] = ()
     interrupted: str = ""
@@ -179,6 +182,11 @@ class StudyResult(NotebookView):
         return Columns(self.table)
 
     @cached_property
+    def tables(self) -> dict[str, Columns]:
+        """Its further tables by name, such as ``trials`` of errors: one row for each assembly."""
+        return {name: Columns(table) for name, table in self.further.items()}
+
+    @cached_property
     def facts(self) -> Facts:
         """The facts of the result and of the study (see docs/summary.md).
 
@@ -221,7 +229,7 @@ class StudyResult(NotebookView):
 
     @property
     def files(self) -> dict[str, bytes]:
-        """Its files: the table and its pages, by name.
+        """Its files: the tables and its pages, by name.
 
         Examples
         --------
@@ -233,7 +241,12 @@ class StudyResult(NotebookView):
         """
         from gearcam.export.table import table_bytes
 
-        return {self.file: table_bytes(self.table), **self.pages}
+        stem = Path(self.file).stem
+        tables = {f"{stem}_{name}.csv": table for name, table in self.further.items()}
+        written = {
+            name: table_bytes(one) for name, one in {self.file: self.table, **tables}.items()
+        }
+        return {**written, **self.pages}
 
     def to_dict(self) -> dict[str, Any]:
         """Return the content of ``summary.json`` without files (see `Result.to_dict`).

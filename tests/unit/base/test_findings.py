@@ -13,7 +13,7 @@ import gearcam as gc
 from gearcam.base.findings import CHECKS, Finding, Remark, check
 from gearcam.base.quantities import NUMBER, Param
 from gearcam.designs.kind import KINDS
-from gearcam.sweep.rows import measured
+from gearcam.sweeps.rows import measured
 
 for _kind in KINDS.values():
     _kind.load_checks()

@@ -26,7 +26,7 @@ from gearcam.gears.track import LeastRadius
 from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.results.advice import Remedies, Remedy
-from gearcam.sweep.rows import measured
+from gearcam.sweeps.rows import measured
 from helpers_built import fresh
 from helpers_pairs import PROFILES, job
 from helpers_remedies import (

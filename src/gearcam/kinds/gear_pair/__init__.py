@@ -24,11 +24,13 @@ STUDIES: Final = (
     Study(
         name="errors",
         key="errors",
-        doc="Study errors of mounting and making of gear pairs; write DIR/NAME/errors.csv.",
+        doc="Study errors of mounting and making of gear pairs; write DIR/NAME/errors.csv, and "
+        "errors_trials.csv with a row for each random assembly.",
         done="studied",
         table="errors",
         compute=deferred(f"{_HERE}.errors:study_errors"),
         options={"eccentricity_deg": "eccentricity-angle", "file": "pitch"},
+        parallel=True,
     ),
     Study(
         name="forces",

@@ -15,9 +15,10 @@ from gearcam.base.facts import Fact, Tree, extent
 from gearcam.base.findings import limit_of, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import ARCSEC
-from gearcam.meshing.assembly import Assembly, alone, demand, given, random_assemblies
+from gearcam.kinds.gear_pair.error_trials import Outcome, Trials, tried
+from gearcam.meshing.assembly import Assembly, alone, demand, given
 from gearcam.meshing.error_checks import TRANSMISSION
-from gearcam.meshing.errors import Running, cycle, largest, of_error, run
+from gearcam.meshing.errors import Running, Runs, cycle, largest, of_error
 from gearcam.meshing.settings import ERRORS
 from gearcam.numeric.arrays import as_complex
 from gearcam.numeric.bulges import flatten_bulges
@@ -49,8 +50,6 @@ _WORDS: Final = {name: words for name, (words, _, _) in _SIZES.items()} | _OUTLI
 """Words, unit and size of each error."""
 
 _HARMONICS: Final = 5
-_PERCENTILES: Final = (50, 90, 99)
-_BARS: Final = 40
 
 _WHOLE: Final = 1e-9
 """Rounding of a whole number."""
@@ -59,7 +58,7 @@ _SAGITTA: Final = 0.01
 """Chord error of flattened arcs of a measured outline, in chord tolerances of the design."""
 
 
-def study_errors(result: GearPairResult, progress: Progress) -> StudyResult:
+def study_errors(result: GearPairResult, progress: Progress, jobs: int = 1) -> StudyResult:
     """Return the study of the errors of a pair (see `gearcam.meshing.assembly`).
 
     Parameters
@@ -68,6 +67,8 @@ def study_errors(result: GearPairResult, progress: Progress) -> StudyResult:
         The pair.
     progress : Progress
         Called with what is computed, the number done and their total.
+    jobs : int
+        Number of processes of the random assemblies.
 
     Returns
     -------
@@ -91,7 +92,8 @@ def study_errors(result: GearPairResult, progress: Progress) -> StudyResult:
 
     with result.stage("errors"):
         phi1 = cycle(gears, spec.steps, alike=every.alike and spec.alike)
-        assembled = partial(run, steps, width, phi1=phi1)
+        runs = Runs(steps=steps, width=width, phi1=phi1)
+        assembled = runs.of
         report(0)
         without, together = assembled(Assembly()), assembled(every)
         limit = limit_of(ERRORS, TRANSMISSION, limits) if not result.pair.on_rack else math.inf
@@ -103,13 +105,17 @@ def study_errors(result: GearPairResult, progress: Progress) -> StudyResult:
                 sizes[name] = _largest(assembled, name, one, limit)
             else:
                 sizes[name] = off[name]
-        trials: list[tuple[float, float, bool]] = []
+        done: list[tuple[Assembly, Outcome]] = []
         try:
-            for number, one in enumerate(random_assemblies(spec, gears, every)):
-                report(2 + len(each) + number)
-                trials.append(_trial(assembled, one))
+            for one in tried(result, runs, every, jobs, lambda at: report(2 + len(each) + at)):
+                done.append(one)  # noqa: PERF402 - an interruption leaves those that are done
         except KeyboardInterrupt:
             pass
+        trials = Trials(
+            assemblies=[one for one, _ in done],
+            outcomes=[outcome for _, outcome in done],
+            unit=without.unit,
+        )
     group = {
         **_facts(together, gears, "all errors together"),
         "without": _facts(without, gears, "without errors"),
@@ -117,7 +123,7 @@ def study_errors(result: GearPairResult, progress: Progress) -> StudyResult:
             name: _facts(one, gears, f"{_WORDS[name]} alone") | sizes[name]
             for name, one in running.items()
         },
-        "trials": _trial_facts(np.array(trials), without.unit) if trials else None,
+        "trials": trials.facts(spec.percentiles) if trials.done else None,
     }
     lines = {"all together": together, "without": without}
     lines |= {_WORDS[name]: one for name, one in running.items()}
@@ -128,20 +134,12 @@ def study_errors(result: GearPairResult, progress: Progress) -> StudyResult:
         table=_columns(phi1, without, together, running),
         group=group,
         study_findings=() if every.none else run_checks(ERRORS, together, limits),
-        drawn=partial(_charts, lines, np.array(trials), without.unit),
+        further={"trials": trials.table} if trials.done else {},
+        drawn=partial(_charts, lines, trials, without.unit),
         interrupted=""
-        if len(trials) == spec.assemblies
-        else f"{len(trials)} of {spec.assemblies} trials",
+        if trials.done == spec.assemblies
+        else f"{trials.done} of {spec.assemblies} trials",
     )
-
-
-def _trial(assembled: Run, one: Assembly) -> tuple[float, float, bool]:
-    """Return transmission error, least backlash, and whether a random assembly jams."""
-    try:
-        found = assembled(one)
-    except InfeasibleError:
-        return math.inf, math.inf, False
-    return found.peak_to_peak, found.least_backlash, found.jams
 
 
 def _with_outlines(result: GearPairResult, every: Assembly) -> tuple[Assembly, dict[str, Tree]]:
@@ -267,38 +265,6 @@ def _facts(found: Running, gears: Any, how: str) -> Tree:
     }
 
 
-def _trial_facts(trials: Array, unit: str) -> Tree:
-    """Return counts, and percentiles of errors that so many assemblies do not exceed."""
-    error, backlash, jams = trials.T
-    touching = np.isfinite(error)
-    tree: Tree = {
-        "count": len(trials),
-        "jam": Fact(int(np.count_nonzero(jams)), "assemblies that jam", shown=True),
-        "apart": Fact(
-            int(np.count_nonzero(~touching)),
-            "assemblies in which nothing touches somewhere",
-            shown=not touching.all(),
-        ),
-    }
-    least = {
-        share: float(np.percentile(error, share, method="inverted_cdf")) for share in _PERCENTILES
-    }
-    tree[f"transmission_error_{unit}"] = {
-        f"p{share}": Fact(
-            value,
-            f"transmission error of {share} % of the assemblies, at most",
-            unit=unit,
-            shown=True,
-        )
-        for share, value in least.items()
-        if math.isfinite(value)
-    } or None
-    if touching.any():
-        backlash = backlash[touching]
-        tree["backlash_mm"] = extent(float(backlash.min()), float(backlash.max()))
-    return tree
-
-
 def _columns(
     phi1: Array, without: Running, together: Running, each: Mapping[str, Running]
 ) -> dict[str, Array]:
@@ -314,7 +280,7 @@ def _columns(
     }
 
 
-def _charts(lines: Mapping[str, Running], trials: Array, unit: str) -> dict[str, Chart]:
+def _charts(lines: Mapping[str, Running], trials: Trials, unit: str) -> dict[str, Chart]:
     """Return transmission errors with and without errors, and the histogram of the trials."""
     from gearcam.kinds.gear_pair.drawn import DRIVER
 
@@ -329,16 +295,4 @@ def _charts(lines: Mapping[str, Running], trials: Array, unit: str) -> dict[str,
             ),
         )
     }
-    found = trials[np.isfinite(trials[:, 0]), 0] if len(trials) else trials
-    if len(found):
-        bars = min(_BARS, 5 + math.isqrt(len(found)))
-        counts, edges = np.histogram(found, bars)
-        # a stepped line with two points at each edge
-        heights = np.concatenate([[0.0], np.repeat(counts, 2), [0.0]])
-        charts["trials"] = Chart(
-            title="Transmission error of random assemblies",
-            x=f"transmission error, peak to peak, {unit}",
-            y="assemblies",
-            lines=(Line(label="assemblies", x=np.repeat(edges, 2), y=heights),),
-        )
-    return charts
+    return charts | trials.charts

@@ -28,8 +28,8 @@ import numpy as np
 
 from gearcam.base.errors import MissingExtraError
 from gearcam.numeric.arrays import Array
-from gearcam.sweep.axes import Varied
-from gearcam.sweep.plan import latin_hypercube
+from gearcam.sweeps.axes import Varied
+from gearcam.sweeps.plan import latin_hypercube
 
 GENERATION: Final = 24
 """Variants that are asked for at once."""

@@ -15,8 +15,9 @@ from typing import Any
 import pytest
 
 import gearcam as gc
-from gearcam.sweep.pool import Processes
-from gearcam.sweep.rows import Built, measured
+from gearcam.base.errors import DesignError
+from gearcam.sweeps.pool import Processes
+from gearcam.sweeps.rows import Built, measured
 from helpers_processes import ENVIRONMENT
 from helpers_sweep import BASE, Loads, odd
 
@@ -95,7 +96,7 @@ def test_no_process_is_left_when_the_rows_are_not_wanted_any_more() -> None:
 
 
 PARENT = """
-from gearcam.sweep.pool import Processes
+from gearcam.sweeps.pool import Processes
 from helpers_sweep import BASE, odd
 
 jobs = [(number, {"deed": deed}) for number, deed in enumerate(("work", "hang"))]
@@ -157,13 +158,13 @@ def test_rows_of_processes_are_those_of_this_one() -> None:
     ("loads", "why"),
     [
         (Loads(importlib.import_module, "gearcam_gone"), "begin: ModuleNotFoundError: .*gone"),
-        (Loads(os._exit, 1), "begin$"),
+        (Loads(os._exit, 1), r"begin\n.*allowed: a script"),
     ],
 )
 def test_a_process_that_cannot_begin_is_a_fault_and_not_a_refusal(loads: Loads, why: str) -> None:
     with (
         Processes(jobs=2, measure=loads).session(BASE) as build,
-        pytest.raises(RuntimeError, match=why),
+        pytest.raises(DesignError, match=why),
     ):
         list(build(deeds("work")))
 

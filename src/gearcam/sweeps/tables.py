@@ -10,16 +10,20 @@ from __future__ import annotations
 import csv
 import importlib.util
 import json
-from collections.abc import Callable, Iterable, Iterator, Sequence
+import math
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
 from typing import Any, Final
 
+import numpy as np
+
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import WriteError
-from gearcam.sweep.log import Log
-from gearcam.sweep.rows import Built
+from gearcam.numeric.columns import Columns
+from gearcam.sweeps.kept import RowStore
+from gearcam.sweeps.rows import Built
 
 _BATCH: Final = 5000
 """Rows of Parquet that are in memory at once."""
@@ -59,13 +63,69 @@ class Tally(ShortRepr):
             if isinstance(value, bool) or not isinstance(value, int | float):
                 self.texts.add(key)
 
+    @property
+    def words(self) -> str:
+        """What is not right, in words."""
+        words = f"{self.refused} refused, {self.wrong} with errors"
+        return f"{words}, {self.faults} by faults of gearcam" if self.faults else words
 
-def write_tables(log: Log, folder: Path, stem: str = "sweep") -> tuple[Tally, list[Path]]:
-    """Write the rows of a log as tables.
+    @property
+    def text_columns(self) -> set[str]:
+        """Names of the columns that are texts."""
+        facts = {name for name, text in self.facts.items() if text}
+        return facts | self.texts | {"findings", "refusal"}
+
+
+def tally_of(rows: Iterable[Built]) -> Tally:
+    """Return what some rows have."""
+    tally = Tally()
+    for row in rows:
+        tally.add(row)
+    return tally
+
+
+def columns_of(there: RowStore) -> Columns:
+    """Return rows as columns, as of the CSV file; numbers that a row does not have are nan.
 
     Parameters
     ----------
-    log : Log
+    there : RowStore
+        The rows.
+
+    Returns
+    -------
+    Columns
+        Empty without rows. Columns with a text are texts, empty where a row has none.
+    """
+    tally = tally_of(there.rows())
+    if not tally.rows:
+        return Columns({})
+    keys = list(next(there.rows()).values)
+    texts, whole = tally.text_columns, {"number", "errors"}
+    names, *_ = _records(there.rows(), keys, list(tally.facts))
+    cells: dict[str, list[Any]] = {name: [] for name in names}
+    for record in _records(there.rows(), keys, list(tally.facts)):
+        for name, value in record.items():
+            missing = value is None
+            if name in texts:
+                cells[name].append("" if missing else str(value))
+            else:
+                cells[name].append(math.nan if missing else value)
+    return Columns(
+        {name: np.array(one, dtype=_dtype(name, texts, whole)) for name, one in cells.items()}
+    )
+
+
+def _dtype(name: str, texts: Collection[str], whole: Collection[str]) -> type:
+    return str if name in texts else int if name in whole else float
+
+
+def write_tables(log: RowStore, folder: Path, stem: str = "sweep") -> tuple[Tally, list[Path]]:
+    """Write rows as tables.
+
+    Parameters
+    ----------
+    log : RowStore
         With the rows.
     folder : path
         Where to write.
@@ -84,9 +144,7 @@ def write_tables(log: Log, folder: Path, stem: str = "sweep") -> tuple[Tally, li
     WriteError
         If a file cannot be written.
     """
-    tally = Tally()
-    for row in log.rows():
-        tally.add(row)
+    tally = tally_of(log.rows())
     if not tally.rows:
         return tally, []
     first = next(log.rows())
@@ -95,8 +153,7 @@ def write_tables(log: Log, folder: Path, stem: str = "sweep") -> tuple[Tally, li
     written_whole(table, lambda path: _write_csv(path, _records(log.rows(), keys, facts)))
     if importlib.util.find_spec("pyarrow") is None:
         return tally, [table]
-    texts = {name for name, text in tally.facts.items() if text} | tally.texts
-    texts |= {"findings", "refusal"}
+    texts = tally.text_columns
     written_whole(more, lambda path: _write_parquet(path, _records(log.rows(), keys, facts), texts))
     return tally, [table, more]
 

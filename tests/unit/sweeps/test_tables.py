@@ -7,9 +7,9 @@ from pathlib import Path
 import polars as pl
 import pytest
 
-from gearcam.sweep.log import Log
-from gearcam.sweep.rows import Built
-from gearcam.sweep.tables import Tally, write_tables
+from gearcam.sweeps.log import Log
+from gearcam.sweeps.rows import Built
+from gearcam.sweeps.tables import Tally, write_tables
 
 ROWS = [
     Built(

@@ -18,11 +18,13 @@ from multiprocessing import get_context
 from multiprocessing.connection import wait
 from typing import Any, Final
 
+from gearcam.base.errors import DesignError
 from gearcam.base.interrupts import unbroken
+from gearcam.base.processes import UNGUARDED
 from gearcam.designs.design import Design
-from gearcam.sweep.engine import Build, Engine, Job
-from gearcam.sweep.rows import Built
-from gearcam.sweep.worker import READY, main
+from gearcam.sweeps.engine import Build, Engine, Job
+from gearcam.sweeps.rows import Built
+from gearcam.sweeps.worker import READY, main
 
 _SPAWN: Final = get_context("spawn")  # threads of this process do not survive a fork
 
@@ -94,7 +96,7 @@ class Crew:
 
         Raises
         ------
-        RuntimeError
+        DesignError
             If a process cannot begin.
         """
         source, rows = iter(jobs), list[Built | None]()
@@ -163,7 +165,9 @@ class _Process:
         if self._stopped or job is None:
             return None
         if not self._begun:
-            raise RuntimeError(f"a process of the sweep cannot begin{why}")
+            message = f"a process of the sweep cannot begin{why}"
+            allowed = "functions of modules that it can import" if why else UNGUARDED
+            raise DesignError.of(message, allowed=allowed) from None
         if not late and not self._again:
             self.build(job, again=True)
             return None

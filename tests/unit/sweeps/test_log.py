@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from gearcam.base.errors import DesignError, WriteError
-from gearcam.sweep.log import LOG, Log
-from gearcam.sweep.rows import Built
+from gearcam.sweeps.log import LOG, Log
+from gearcam.sweeps.rows import Built
 
 HEAD = {"sweep": "abc", "file": "a.toml", "variants": 9, "varied": ["c=1"]}
 

@@ -24,9 +24,9 @@ from gearcam.designs.writing import least_document, toml_text, value_text
 from gearcam.pictures.scenes import Scene
 from gearcam.report.page import sweep_page
 from gearcam.results.result import Result
-from gearcam.sweep.rows import Built
-from gearcam.sweep.small_pictures import PLACES, pictures
-from gearcam.sweep.words import labels
+from gearcam.sweeps.rows import Built
+from gearcam.sweeps.small_pictures import PLACES, pictures
+from gearcam.sweeps.words import labels
 
 PAGE: Final = "sweep.html"
 """Name of the file."""

@@ -18,11 +18,11 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import InfeasibleError
 from gearcam.numeric.arrays import Array
-from gearcam.sweep.engine import Build
-from gearcam.sweep.log import Log
-from gearcam.sweep.methods import NONE, Spent
-from gearcam.sweep.plan import Plan
-from gearcam.sweep.rows import Built
+from gearcam.sweeps.engine import Build
+from gearcam.sweeps.kept import RowStore
+from gearcam.sweeps.methods import NONE, Spent
+from gearcam.sweeps.plan import Plan
+from gearcam.sweeps.rows import Built
 
 _REFUSED: Final = 1e6
 """Violation of variants that cannot be made: above that of any finding."""
@@ -45,7 +45,7 @@ class Trials(ShortRepr):
         Whether the best must not have warnings either.
     most : int
         Largest number of trials.
-    log : Log
+    log : RowStore
         Rows that are there, and new ones.
     build : callable
         ``build(jobs)`` yields the rows of variants.
@@ -59,7 +59,7 @@ class Trials(ShortRepr):
     signs: Mapping[str, float]
     warnings: bool
     most: int
-    log: Log
+    log: RowStore
     build: Build
     progress: Callable[[int, int], Any] | None = None
     rows: list[Built] = field(default_factory=list)
@@ -148,6 +148,8 @@ class Trials(ShortRepr):
 
     def _refusal(self) -> InfeasibleError:
         """Return the refusal of a search without a variant that may be taken."""
+        if not self.rows:
+            return InfeasibleError("no variant was built", where="sweep")
         reasons = Counter(row.refusal or ", ".join(row.findings) for row in self.rows)
         why, count = reasons.most_common(1)[0]
         return InfeasibleError(

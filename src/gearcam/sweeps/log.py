@@ -17,7 +17,7 @@ from types import TracebackType
 from typing import Any, BinaryIO, Final, Self
 
 from gearcam.base.errors import DesignError, WriteError
-from gearcam.sweep.rows import Built
+from gearcam.sweeps.rows import Built
 
 LOG: Final = "sweep.log"
 """Name of the file."""
@@ -70,6 +70,10 @@ class Log:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the file."""
         self._file.close()
 
     def __contains__(self, number: int) -> bool:

@@ -10,38 +10,33 @@ import asyncio
 import logging
 import math
 import pickle
-import sys
-import threading
 import time
-import uuid
 import warnings
 from collections import Counter, deque
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sized
-from contextlib import contextmanager, suppress
+from collections.abc import Iterable, Iterator, Sized
+from contextlib import contextmanager, nullcontext, suppress
 from dataclasses import dataclass
-from importlib.metadata import PackageNotFoundError, version
 from itertools import islice
-from multiprocessing import current_process
-from pathlib import Path
-from socket import gethostname
 from typing import Any, Final
 
 from gearcam.base.errors import DesignError, MissingExtraError
 from gearcam.base.interrupts import unbroken
-from gearcam.designs.design import Design, design, document_of
-from gearcam.designs.reader import find_tables
-from gearcam.sweep.engine import Build, Engine, Job
-from gearcam.sweep.pool import Crew
-from gearcam.sweep.rows import Built
-
-_CHUNK_S: Final = 1.0
-"""Time that a chunk should take, s: a task costs the scheduler about a millisecond."""
-
-_MOST: Final = 256
-"""Largest number of variants in a chunk."""
-
-_LATELY: Final = 100
-"""Number of variants whose mean time decides how many are a chunk."""
+from gearcam.designs.design import Design
+from gearcam.sweeps.engine import Build, Engine, Job
+from gearcam.sweeps.rows import Built
+from gearcam.sweeps.tasks import (
+    LARGEST,
+    LATELY,
+    Order,
+    build_chunk,
+    chunk_size,
+    demand_same,
+    dismiss,
+    identical,
+    order_for,
+    told_versions,
+    versions_here,
+)
 
 _AHEAD: Final = 2
 """Chunks that wait or are built, for each thread of a worker."""
@@ -51,9 +46,6 @@ _ANSWER_S: Final = 5.0
 
 _LOOK_S: Final = 2.0
 """Time between looks for workers that came or went, s."""
-
-_SAME: Final = ("python", "gearcam", "dask", "distributed", "numpy")
-"""What has the same version on all machines."""
 
 _LOGGERS: Final = ("distributed", "tornado", "asyncio")
 
@@ -68,131 +60,57 @@ class Cluster(Engine):
     ----------
     address : str
         Of the scheduler, such as ``tcp://host:8786``.
+    client : dask.distributed.Client, optional
+        A client of the scheduler, which is used and left open, instead of its address.
 
     Raises
     ------
     DesignError
-        If nothing answers at the address, or other versions are there.
+        If nothing answers at the address, other versions are there, or the client is one for
+        asynchronous programs.
     MissingExtraError
         If dask is not installed.
     """
 
-    address: str
+    address: str = ""
+    client: Any = None
 
     def __post_init__(self) -> None:
-        versions = _answered(self.address)
+        if getattr(self.client, "asynchronous", False):
+            allowed = "a client made without asynchronous=True"
+            raise DesignError.of("is for asynchronous programs", key="client", allowed=allowed)
+        versions = (
+            _answered(self.address)
+            if self.client is None
+            else self.client.get_versions(packages=["gearcam"])
+        )
         there = {f"the worker {name}": known for name, known in versions["workers"].items()}
         there["the scheduler"] = versions["scheduler"]
-        _demand_same(_versions(), {name: _told(known["packages"]) for name, known in there.items()})
+        told = {name: told_versions(one["packages"]) for name, one in there.items()}
+        key = "--scheduler" if self.client is None else "client"
+        demand_same(versions_here(), told, key)
 
     @property
     def name(self) -> str:
         """In words."""
-        return f"dask at {self.address}"
+        return f"dask at {self._place}"
+
+    @property
+    def _place(self) -> str:
+        return self.address or str(self.client.scheduler.address)
 
     @contextmanager
     def session(self, base: Design) -> Iterator[Build]:
         """Yield what builds variants (see `Engine.session`)."""
-        order = Order(
-            token=uuid.uuid4().hex,
-            task=pickle.dumps((_from_root(base), self.measure)),
-            seconds=self.seconds,
-            memory=self.memory,
-            versions=_versions(),
-        )
-        with _connected(self.address) as client:
-            chunks = _Chunks(client, self.address, order)
+        order = order_for(base, self.measure, self.seconds, self.memory)
+        given = nullcontext(self.client)
+        with given if self.client is not None else _connected(self.address) as client:
+            chunks = _Chunks(client, self._place, order)
             try:
                 yield chunks.rows
             finally:
                 with unbroken():
                     chunks.end()
-
-
-def _from_root(base: Design) -> Design:
-    """Return a design that names CSV files from the root: workers run in other folders."""
-    document = document_of(base)
-    find_tables(document, Path.cwd())
-    return design(document, base.source)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Order:
-    """What workers need to build variants of a sweep; each gets it once.
-
-    Parameters
-    ----------
-    token : str
-        Tells the sweep from others.
-    task : bytes
-        The design, and the function that makes the row of a variant, pickled.
-    seconds : float, s
-        Largest time of a variant.
-    memory : int
-        Largest memory of a process, bytes.
-    versions : mapping of str to str
-        Of Python and packages, where the sweep was started.
-    """
-
-    token: str
-    task: bytes
-    seconds: float
-    memory: int
-    versions: Mapping[str, str]
-
-
-def identical(order: Order) -> Order:
-    """Return an order: as the result of a task it is made again when its workers end."""
-    return order
-
-
-_crews: Final[dict[tuple[str, int], Crew]] = {}
-"""Processes of this worker by sweep and thread."""
-
-_lock: Final = threading.Lock()
-
-
-def build_chunk(order: Order, chunk: bytes) -> bytes:
-    """Return the rows of a chunk of variants, for a thread of a worker; both are pickled.
-
-    Parameters
-    ----------
-    order : Order
-        Of the sweep.
-    chunk : bytes
-        Numbers and values of variants.
-    """
-    key = order.token, threading.get_ident()
-    with _lock:
-        if key not in _crews:
-            _demand_same(order.versions, {f"the worker at {gethostname()}": _versions()})
-            # dask makes its workers daemons, which may have no processes; ours end with theirs
-            current_process().daemon = False
-            _crews[key] = Crew(order.task, order.seconds, order.memory)
-        crew = _crews[key]
-    return pickle.dumps(list(crew.rows(pickle.loads(chunk))))
-
-
-def dismiss(token: str) -> None:
-    """End the processes of a sweep on this worker."""
-    with _lock:
-        ended = [_crews.pop(key) for key in list(_crews) if key[0] == token]
-    for crew in ended:
-        crew.stop()
-
-
-def chunk_size(times: Collection[float], most: int) -> int:
-    """Return the number of variants of a chunk: one while nobody knows how long they take.
-
-    Parameters
-    ----------
-    times : collection of float, s
-        Of variants, of late.
-    most : int
-        Largest number.
-    """
-    taken = sum(times)
-    return max(1, int(min(most, _CHUNK_S * len(times) / taken))) if taken > 0.0 else 1
 
 
 class _Chunks:
@@ -203,11 +121,11 @@ class _Chunks:
 
         self._client, self._address = client, address
         self._token, self._jobs = order.token, iter(list[Job]())
-        self._times = deque[float](maxlen=_LATELY)
+        self._times = deque[float](maxlen=LATELY)
         self._order = client.submit(identical, order, pure=False)
         self._waiting: dict[Any, list[Job]] = {}
         self._done = as_completed(with_results=True, raise_errors=False, loop=client.loop)
-        self._largest, self._threads, self._look = _MOST, 1, 0.0
+        self._largest, self._threads, self._look = LARGEST, 1, 0.0
         self._suspects: deque[Job] = deque()
         self._alone: Any = None
         self._killed: Counter[int] = Counter()
@@ -216,7 +134,7 @@ class _Chunks:
         """Yield a row for each job; all workers build a part of a lot whose size is known."""
         self._count()
         if isinstance(jobs, Sized):
-            self._largest = min(_MOST, math.ceil(len(jobs) / self._threads))
+            self._largest = min(LARGEST, math.ceil(len(jobs) / self._threads))
         self._jobs = iter(jobs)
         self._fill()
         while self._waiting:
@@ -355,44 +273,6 @@ def _gone(address: str) -> DesignError:
     message = f"{address}: the scheduler does not answer any more"
     allowed = "the same command, which goes on, when it runs again"
     return DesignError.of(message, key="--scheduler", allowed=allowed)
-
-
-def _versions() -> dict[str, str]:
-    """Return the versions of Python and packages here; empty for what is not installed."""
-    versions = {"python": sys.version}
-    for name in _SAME[1:]:
-        with suppress(PackageNotFoundError):
-            versions[name] = version(name)
-    return _told(versions)
-
-
-def _told(versions: Mapping[str, Any]) -> dict[str, str]:
-    """Return the versions that have to be the same; of Python without its last number."""
-    found = {name: str(versions.get(name) or "") for name in _SAME}
-    return found | {"python": ".".join(found["python"].split(".")[:2])}
-
-
-def _demand_same(here: Mapping[str, str], others: Mapping[str, Mapping[str, str]]) -> None:
-    """Refuse machines whose versions differ.
-
-    Parameters
-    ----------
-    here : mapping of str to str
-        The versions of this process.
-    others : mapping of str to mapping
-        Those of others, by their names.
-    """
-    for whose, there in others.items():
-        wrong = [
-            f"{name} {there[name]} instead of {here[name]}" if there[name] else f"no {name}"
-            for name in _SAME
-            if there[name] != here[name]
-        ]
-        if wrong:
-            wanted = ", ".join(f"{name} {one}" for name, one in here.items() if one)
-            message = f"{whose} has {', '.join(wrong)}"
-            allowed = f"the same on scheduler and workers: {wanted}"
-            raise DesignError.of(message, key="--scheduler", allowed=allowed)
 
 
 @contextmanager

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from gearcam.base.errors import DesignError
-from gearcam.sweep.axes import axes_of, settings_of
+from gearcam.sweeps.axes import axes_of, settings_of
 
 
 def axis(written: Any) -> Any:

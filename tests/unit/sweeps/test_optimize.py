@@ -13,8 +13,8 @@ import pytest
 
 import gearcam as gc
 from gearcam.cli import main
-from gearcam.sweep.pool import Processes
-from gearcam.sweep.rows import Built, measured
+from gearcam.sweeps.pool import Processes
+from gearcam.sweeps.rows import Built, measured
 from helpers_pairs import PROFILES
 
 CAM = """

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from gearcam.numeric.arrays import Array
-from gearcam.sweep.axes import axes_of
-from gearcam.sweep.methods import METHODS_KNOWN, Quest, Spent, minimized, usual
+from gearcam.sweeps.axes import axes_of
+from gearcam.sweeps.methods import METHODS_KNOWN, Quest, Spent, minimized, usual
 from helpers_sampling import chosen, few
 
 SPAN = {"a": "0:1", "b": "0:1"}

@@ -13,10 +13,11 @@ import pytest
 
 import gearcam as gc
 from gearcam.base.errors import DesignError
-from gearcam.sweep import cluster
-from gearcam.sweep.cluster import Cluster, chunk_size
-from gearcam.sweep.pool import Processes
-from gearcam.sweep.rows import Built, measured
+from gearcam.sweeps import cluster, tasks
+from gearcam.sweeps.cluster import Cluster
+from gearcam.sweeps.pool import Processes
+from gearcam.sweeps.rows import Built, measured
+from gearcam.sweeps.tasks import chunk_size
 from helpers_pairs import PROFILES
 from helpers_sweep import BASE, odd
 
@@ -133,12 +134,26 @@ def test_an_address_at_which_nothing_answers_is_refused(monkeypatch: pytest.Monk
 
 
 def test_other_versions_are_named() -> None:
-    here = cluster._versions()
-    cluster._demand_same(here, {"the scheduler": here})
+    here = tasks.versions_here()
+    tasks.demand_same(here, {"the scheduler": here})
     there = here | {"distributed": "2020.1", "gearcam": ""}
     with pytest.raises(DesignError) as caught:
-        cluster._demand_same(here, {"the scheduler": here, "the worker a": there})
+        tasks.demand_same(here, {"the scheduler": here, "the worker a": there})
     (problem,) = caught.value.problems
     assert problem.message == (
         f"the worker a has no gearcam, distributed 2020.1 instead of {here['distributed']}"
     )
+
+
+@pytest.mark.slow
+def test_a_client_that_is_given_is_used_and_left_open(local: Any) -> None:
+    distributed: Any = pytest.importorskip("distributed")
+    keys = {"law.eccentricity": [0.1, 0.2, 0.3, 0.99], "pair.teeth": [(20, 20)]}
+    here = gc.sweep(BASE, keys, jobs=1).columns
+    with distributed.Client(local, set_as_default=False) as client:
+        sweep = gc.sweep(BASE, keys, client=client)
+        assert sweep.engine.name == f"dask at {local.scheduler_address}"
+        there = sweep.columns
+        assert client.submit(abs, -1).result() == 1
+    for name in set(here) - {"time_s"}:
+        assert there[name].tolist() == pytest.approx(here[name].tolist(), nan_ok=True), name

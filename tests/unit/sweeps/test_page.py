@@ -16,8 +16,8 @@ import pytest
 import gearcam as gc
 from gearcam.base.errors import GearcamError
 from gearcam.designs.writing import toml_text
-from gearcam.sweep.page import file_text, page
-from gearcam.sweep.rows import Built, measured
+from gearcam.sweeps.page import file_text, page
+from gearcam.sweeps.rows import Built, measured
 from helpers_pairs import PROFILES
 from helpers_sweep import BASE
 

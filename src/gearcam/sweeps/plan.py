@@ -22,7 +22,7 @@ from gearcam.base.two_names import key_of
 from gearcam.designs.design import Design, document_of, value_at
 from gearcam.designs.kind import KINDS
 from gearcam.numeric.arrays import Array
-from gearcam.sweep.axes import Varied
+from gearcam.sweeps.axes import Varied
 
 MANY: Final = 1_000_000
 """Number of variants above which a sweep has to be confirmed."""
@@ -73,7 +73,7 @@ class Plan(ShortRepr):
             Problem(
                 f"{axis.text} has no step",
                 key=axis.key,
-                allowed="from:to:step, or --random N or --latin N to draw samples from it",
+                allowed="from:to:step, or samples: random or latin (--random N, --latin N)",
             )
             for axis in self.axes
             if self.sampling == "grid" and axis.sampled
@@ -161,11 +161,21 @@ class Plan(ShortRepr):
         """What tells this sweep from others: a hash of design and variants."""
         content = {
             "design": document_of(self.base),
-            "axes": [(axis.key, axis.text) for axis in self.axes],
+            "axes": [(axis.key, axis.whole or axis.text) for axis in self.axes],
             "sampling": (self.sampling, self.samples, self.seed),
         }
-        text = json.dumps(content, sort_keys=True, default=lambda one: getattr(one, "__name__", ""))
+        text = json.dumps(content, sort_keys=True, default=_told)
         return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def _told(function: Any) -> list[str]:
+    """Return what tells a Python function of a design from others: its name and what it does."""
+    code = getattr(function, "__code__", None)
+    name = [str(getattr(function, part, "")) for part in ("__module__", "__qualname__")]
+    if code is None:
+        return name
+    numbers = [repr(one) for one in code.co_consts if isinstance(one, int | float | str)]
+    return [*name, code.co_code.hex(), *code.co_names, *numbers]
 
 
 def latin_hypercube(count: int, axes: int, seed: int) -> Array:

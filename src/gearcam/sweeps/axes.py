@@ -16,10 +16,11 @@ A file has the same: texts, numbers and lists.
 
 from __future__ import annotations
 
+import json
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from statistics import NormalDist
 from typing import Any, Final
 
@@ -39,6 +40,10 @@ _CALL: Final = re.compile(r"(log|normal|tolerance)\((.*)\)")
 _ROUNDING: Final = 1e-9
 """Share of a step by which the end of a range may be missed."""
 
+_FEW: Final = 12
+_LONG: Final = 50
+"""Number of values of a list, and length of its text, up to which all are told."""
+
 _CUT: Final = 3.0
 """Standard deviations of a tolerance."""
 
@@ -57,12 +62,15 @@ class Varied(ShortRepr):
         The values; empty if any between two is possible.
     share : callable, optional
         ``share(u)`` returns the value below which a share u of samples is; without `values`.
+    whole : str
+        All that tells it from others, where the text is shortened.
     """
 
     key: str
     text: str
     values: tuple[Any, ...] = ()
     share: Callable[[float], float] | None = None
+    whole: str = ""
 
     @property
     def sampled(self) -> bool:
@@ -132,7 +140,11 @@ class _UnreadableError(ValueError):
 def _axis(key: str, written: Any) -> Varied:
     if not isinstance(written, str):
         values = written if isinstance(written, list) else [written]
-        return _listed(key, show(written), values)
+        return (
+            _given(key, values)
+            if isinstance(written, list)
+            else _listed(key, show(written), values)
+        )
     text = written.strip()
     call = _CALL.fullmatch(text)
     if call:
@@ -140,6 +152,15 @@ def _axis(key: str, written: Any) -> Varied:
     if ":" in text and not any(sign in text for sign in "[\"'"):
         return _range(key, text, text.split(":"))
     return _listed(key, text, values_of(text))
+
+
+def _given(key: str, values: list[Any]) -> Varied:
+    """Return an axis of a list of values, told by its ends if it is long."""
+    axis = _listed(key, show(values), values)
+    if len(values) <= _FEW and len(axis.text) < _LONG:
+        return axis
+    text = f"{len(values)} values, {show(values[0])} to {show(values[-1])}"
+    return replace(axis, text=text, whole=json.dumps(values, default=str))
 
 
 def _listed(key: str, text: str, values: list[Any]) -> Varied:

@@ -10,8 +10,8 @@ import pytest
 
 import gearcam as gc
 from gearcam.base.errors import DesignError
-from gearcam.sweep.axes import axes_of
-from gearcam.sweep.plan import Plan, flattened
+from gearcam.sweeps.axes import axes_of
+from gearcam.sweeps.plan import Plan, flattened
 from helpers_sweep import BASE
 
 

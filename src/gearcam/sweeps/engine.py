@@ -1,4 +1,4 @@
-"""What builds the variants of a sweep: the interface of engines, and what they do with a log."""
+"""What builds the variants of a sweep: the interface of engines, and what they build."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from typing import Any, Final
 
 from gearcam.base.display import ShortRepr
 from gearcam.designs.design import Design
-from gearcam.sweep.log import Log
-from gearcam.sweep.plan import Plan
-from gearcam.sweep.rows import Built, Measure, measured
+from gearcam.sweeps.kept import RowStore
+from gearcam.sweeps.plan import Plan
+from gearcam.sweeps.rows import Built, Measure, measured
 
 Job = tuple[int, dict[str, Any]]
 """Number and values of a variant."""
@@ -69,29 +69,24 @@ class Engine(ABC, ShortRepr):
             yield from build(jobs)
 
 
-def run(
-    plan: Plan, log: Log, engine: Engine, progress: Callable[[int, int], Any] | None = None
-) -> None:
-    """Build what is missing in a log.
+def missing_rows(plan: Plan, there: RowStore, engine: Engine) -> Iterator[Built]:
+    """Build what is missing; yield rows as they come, each when it is kept.
 
     Parameters
     ----------
     plan : Plan
         The variants.
-    log : Log
-        Of this sweep.
+    there : RowStore
+        Rows of this sweep that are there; new ones are kept with them.
     engine : Engine
         What builds them.
-    progress : callable, optional
-        Called with the number of rows that are there and their total.
     """
 
     def missing() -> Iterator[Job]:
         for number in range(plan.count):
-            if number not in log:
+            if number not in there:
                 yield number, plan.values(number)
 
     for row in engine.run(plan.base, missing()):
-        log.append(row)
-        if progress is not None:
-            progress(len(log), plan.count)
+        there.append(row)
+        yield row

@@ -14,7 +14,7 @@ import pytest
 
 import gearcam as gc
 from gearcam.cli import main
-from gearcam.sweep.rows import measured
+from gearcam.sweeps.rows import measured
 from helpers_processes import ENVIRONMENT
 
 TEXT = """
