@@ -23,6 +23,18 @@ SHORT: Final = 10
 NOISE: Final = 1e-12
 """Rounding noise relative to the scale."""
 
+FEW: Final = 5
+"""Largest number of significant digits for people."""
+
+_GIVEN: Final = 6
+"""Digits of a decimal that is written as it is."""
+
+_PLAIN: Final = 1e7
+"""Larger numbers have an exponent."""
+
+DIGITS: Final = 4
+"""Digits of values that are named as remedies."""
+
 _EVERY: Final = 17
 """Significant digits that tell any two doubles apart."""
 
@@ -33,7 +45,7 @@ _WHOLE: Final = 15
 """Length of the shortest text of a double up to which it needs no correction, characters."""
 
 
-def formatted(value: float, digits: int = 6, scale: float = 0.0) -> str:
+def formatted(value: float, digits: int = FEW, scale: float = 0.0) -> str:
     """Return a number as text with few significant digits.
 
     Parameters
@@ -41,7 +53,8 @@ def formatted(value: float, digits: int = 6, scale: float = 0.0) -> str:
     value : float
         Any number; infinity is ``inf``.
     digits : int
-        Largest number of significant digits; trailing zeros are left out.
+        Largest number of significant digits; trailing zeros are left out. By default a decimal of
+        one digit more is written as it is.
     scale : float
         Magnitude relative to which rounding noise is 0, in the unit of `value`; 0 if unknown.
 
@@ -49,10 +62,15 @@ def formatted(value: float, digits: int = 6, scale: float = 0.0) -> str:
     -------
     str
     """
-    return f"{settled(float(value), scale) + 0.0:.{digits}g}"
+    value = settled(float(value), scale) + 0.0
+    near = float(f"{value:.{_GIVEN}g}")
+    given = digits == FEW and math.isclose(near, value, rel_tol=NOISE)
+    text = f"{value:.{_GIVEN if given else digits}g}"
+    plain = "e" in text and 1.0 <= abs(value) < _PLAIN
+    return f"{float(text):.0f}" if plain else text
 
 
-def in_range(value: float, low: float, high: float, digits: int = 6, scale: float = 0.0) -> str:
+def in_range(value: float, low: float, high: float, digits: int = FEW, scale: float = 0.0) -> str:
     """Return a place in a range that repeats as text: what reads as its end is its begin.
 
     Parameters
@@ -73,7 +91,7 @@ def in_range(value: float, low: float, high: float, digits: int = 6, scale: floa
 
 
 def told_apart(
-    value: float | None, other: float | None, unit: str = "", digits: int = 6
+    value: float | None, other: float | None, unit: str = "", digits: int = FEW
 ) -> tuple[str, str]:
     """Return two numbers with their unit as text, so that numbers that differ look different.
 
@@ -164,10 +182,6 @@ def tree(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [tree(item) for item in value]
     return exact(value) if isinstance(value, float) else value
-
-
-DIGITS: Final = 4
-"""Digits of values that are named as remedies."""
 
 
 def shortened(value: float, side: float, digits: int = DIGITS) -> float:

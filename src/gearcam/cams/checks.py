@@ -17,6 +17,7 @@ import numpy as np
 from gearcam.base.findings import ROUNDING, Remark, check
 from gearcam.base.numerals import formatted, rounded_down, settled, shortened
 from gearcam.base.quantities import ANGLE, LENGTH, Param
+from gearcam.base.readable import readable
 from gearcam.cams.cam import Cam
 from gearcam.cams.followers import Follower
 from gearcam.cams.spec import FITTED, FOLLOWED, KIND, PRECISION
@@ -195,7 +196,7 @@ def _undercut(wall: Wall, limit: float) -> Iterator[Remark]:
         left = [pair for pair in left if pair not in inside]
         lost = loss.value * follower.lever
         angle = f" ({formatted(math.degrees(loss.value), 4)} deg)" if follower.angular else ""
-        cut, much = _stretches(inside, text), f"{formatted(lost, 4)} mm{angle}"
+        cut, much = _stretches(inside, text), f"{readable(lost, 'mm')}{angle}"
         yield Remark(
             f"The {wall.called} is {cut}. After trimming it has a corner, on which the follower "
             f"rides from {text(low)} to {text(high)}: "
@@ -254,7 +255,7 @@ def _bent(cam: Cam, jump: Jump) -> str:
         return ""  # a straight piece below a face
     lead = cam.motions[0]
     lost = settled(lost, lead.follower.lever * lead.program.range[1])
-    loses = f", by which {formatted(lost, 3)} mm of lift is lost" if lost else ""
+    loses = f", by which {readable(lost, 'mm', digits=3)} of lift is lost" if lost else ""
     return f"It bends the profile by {formatted(math.degrees(bend), 3)} deg{loses}."
 
 
@@ -319,10 +320,10 @@ def coarse_rows(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     lead = cam.motions[0]
     error = lead.program.errors[0] * lead.follower.lever
     if error > lead.tolerance:
+        known, cut = (readable(one, "mm", digits=3) for one in (error, lead.tolerance))
         yield Remark(
-            f"Between the rows of its table the lift is known to {formatted(error, 3)} mm, the "
-            f"profile is cut to {formatted(lead.tolerance, 3)} mm: the rows are coarse, or they "
-            "scatter.",
+            f"Between the rows of its table the lift is known to {known}, the profile is cut to "
+            f"{cut}: the rows are coarse, or they scatter.",
             "motion",
             error,
             limit=lead.tolerance,
@@ -347,7 +348,7 @@ def lost_motion(cam: Cam, limit: float) -> Iterator[Remark]:
     angle = f" ({formatted(math.degrees(most.value), 4)} deg)" if lead.follower.angular else ""
     if lost > limit:
         yield Remark(
-            f"Between its walls the follower has {formatted(lost, 4)} mm{angle} of lost motion.",
+            f"Between its walls the follower has {readable(lost, 'mm')}{angle} of lost motion.",
             lead.carrier.driver.place(most.theta),
             lost,
         )
@@ -372,8 +373,8 @@ def face_width(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """
     if cam.face_width is not None:
         yield Remark(
-            f"The contact moves up to {formatted(0.5 * cam.face_width, 4)} mm from the middle of "
-            f"each face: faces must be wider than {formatted(cam.face_width, 4)} mm.",
+            f"The contact moves up to {readable(0.5 * cam.face_width, 'mm')} from the middle of "
+            f"each face: faces must be wider than {readable(cam.face_width, 'mm')}.",
             value=cam.face_width,
             unit="mm",
         )

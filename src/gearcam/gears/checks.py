@@ -14,6 +14,7 @@ import numpy as np
 from gearcam.base.findings import ROUNDING, Remark, Severity
 from gearcam.base.numerals import formatted, rounded_down
 from gearcam.base.quantities import ANGLE, COUNT, LENGTH, NUMBER, Param
+from gearcam.base.readable import readable
 from gearcam.gears.cutter import Cutter
 from gearcam.gears.pair import Gear
 from gearcam.gears.subject import CONTACT_RATIO, CheckedPair, pair_check
@@ -398,8 +399,8 @@ def undercut(subject: CheckedPair, limit: float) -> Iterator[Remark]:
         if below.any():
             slope = math.sin(gear.toothing.cutter.alpha) * math.cos(gear.toothing.cutter.alpha)
             lost = float((flanks.lowest + gear.toothing.cutter.reach)[below].max()) * slope
-            depth = formatted(lost, 4)
-            message = f"Undercut removes up to {depth} mm of these flanks at the root; {left}."
+            depth = readable(lost, "mm")
+            message = f"Undercut removes up to {depth} of these flanks at the root; {left}."
         yield Remark(
             f"{message} With about {about} teeth this wheel has none.",
             f"wheel {gear.wheel}, teeth {tooth_ranges(teeth)}",
@@ -477,7 +478,7 @@ def tips_collide(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     if passing.margin < 0.0:
         message = (
             "Tips collide outside the mesh: as it enters or leaves the ring, a tip corner of wheel "
-            f"1 overlaps a tooth of the ring by {formatted(-passing.margin)} mm along the pitch "
+            f"1 overlaps a tooth of the ring by {readable(-passing.margin, 'mm')} along the pitch "
             "curve."
         )
     if passing.margin < -0.5 * subject.pair.toothings[1].pitch:  # no tooth is as wide
@@ -521,7 +522,7 @@ def thin_rim(subject: CheckedPair, limit: float) -> Iterator[Remark]:
                     "limit"
                 )
             yield Remark(
-                f"The rim {what} is {formatted(rim)} mm thick; {hint}.",
+                f"The rim {what} is {readable(rim, 'mm')} thick; {hint}.",
                 f"wheel {gear.wheel}",
                 rim / subject.pair.module,
             )

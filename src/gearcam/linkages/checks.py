@@ -63,7 +63,7 @@ class CheckedMachine(ShortRepr):
 
 
 def _at(q: float) -> str:
-    return f"at {formatted(math.degrees(q), 6)} deg"
+    return f"at {formatted(math.degrees(q))} deg"
 
 
 @check(

@@ -12,6 +12,7 @@ from typing import Protocol
 
 from gearcam.base.findings import Remark, Severity, check
 from gearcam.base.numerals import formatted
+from gearcam.base.readable import readable
 from gearcam.gears.contact import DRIVE, FlankPairs
 from gearcam.gears.subject import CONTACT_RATIO
 from gearcam.gears.subject import KIND as PAIR_KIND
@@ -95,12 +96,14 @@ def contact_ratio(subject: Sided, limit: float) -> Iterator[Remark]:
         message = _FEW
         if gaps and all(stretch.edges for stretch in gaps):
             apart = max(stretch.apart for stretch in gaps)
+            off = readable(apart, "mm", digits=3)
             message = (
                 f"No flanks touch at {arcs_text(gaps)}{_repeats(pairs)}. There tooth edges drive: "
-                f"they scrape, and the driven wheel is up to {formatted(apart, 3)} mm off its "
-                "position along the pitch curve."
+                f"they scrape, and the driven wheel is up to {off} off its position along the "
+                "pitch curve."
             )
         elif gaps:
+            off = readable(apart, "mm", digits=3)
             message = (
                 f"No flanks touch at {arcs_text(gaps)}{_repeats(pairs)}, and in part of this "
                 "range nothing drives at all."

@@ -12,6 +12,7 @@ from typing import Final
 from gearcam.base.findings import Remark, check
 from gearcam.base.numerals import formatted, shortened
 from gearcam.base.quantities import ANGLE, LENGTH, Param
+from gearcam.base.readable import readable
 from gearcam.mechanics.clearance import without_clearance
 from gearcam.spatial.globoidal import GloboidalCam
 from gearcam.spatial.remarks import shocks, smaller_roller, thin_rib
@@ -86,7 +87,7 @@ def carved_solid(subject: tuple[int, float], limit: float) -> Iterator[Remark]: 
     count, height = subject
     yield Remark(
         f"A wall is undercut: the rib is what the rollers leave at {count} cam angles in a turn, "
-        f"by manifold3d. Scallops between them are up to {formatted(height, 3)} mm high.",
+        f"by manifold3d. Scallops between them are up to {readable(height, 'mm', digits=3)} high.",
         value=height,
     )
 
@@ -130,7 +131,7 @@ def lost_motion(subject: Subject, limit: float) -> Iterator[Remark]:
     lost = subject[0].lost_motion
     if lost.value > limit:
         yield Remark(
-            f"A roller can move by {formatted(lost.value, 4)} mm while the cam does not.",
+            f"A roller can move by {readable(lost.value, 'mm')} while the cam does not.",
             lost.place,
             lost.value,
         )
@@ -163,7 +164,7 @@ def thin_wall(subject: Subject, limit: float) -> Iterator[Remark]:
     core = cam.distance - cam.floor - bore
     if bore and core < limit:
         yield Remark(
-            f"The metal between the core and the bore is {formatted(core, 4)} mm thick.",
+            f"The metal between the core and the bore is {readable(core, 'mm')} thick.",
             "between the core and the bore",
             core,
         )

@@ -264,7 +264,7 @@ def _pictures(pair: ElasticPair, certified: list[CertifiedRoot]) -> dict[str, by
     for one in certified:
         field = stress_field(one.certificate, pair.result.pair.module)
         place = f"wheel {one.wheel}, tooth {one.tooth}, {angle_text(one.phi1)}"
-        under = f"{formatted(one.force, 6)} N on {formatted(pair.width, 4)} mm"
+        under = f"{formatted(one.force)} N on {formatted(pair.width, 4)} mm"
         lines = (
             f"{pair.result.design.name}: {place}",
             f"{under}; bands: stress along the edge, red tension, blue compression",

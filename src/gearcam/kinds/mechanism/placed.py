@@ -74,7 +74,7 @@ def _formula_cells(text: str, low: float, high: float) -> Array:
         name="the place",
         low=low,
         high=high,
-        place=lambda q: f"{formatted(math.degrees(q), 6)} deg",
+        place=lambda q: f"{formatted(math.degrees(q))} deg",
         variable="q",
     )
     function = AxisFunction(axis, parse(text, "q").evaluate, DEFAULT.expansion)

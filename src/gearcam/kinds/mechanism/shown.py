@@ -195,7 +195,7 @@ def _fitted(path: PointPath, one: StretchSpec, fit: LineFit | CircleFit) -> Tree
 
 
 def _between(begin: float, end: float) -> str:
-    return f"{formatted(DEG * begin, 6)} to {formatted(DEG * end, 6)} deg"
+    return f"{formatted(DEG * begin)} to {formatted(DEG * end)} deg"
 
 
 def _intervals(result: MechanismResult) -> list[Tree] | None:
