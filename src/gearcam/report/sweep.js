@@ -27,7 +27,8 @@ const inputs = all.filter((one) => one.input);
 const columns = new Map(all.filter((one) => one.differs).map((one) => [one.name, one]));
 const span = (one) => one.high > one.low ? one.high - one.low : 1;
 const share = (one, value) => one.high > one.low ? (value - one.low) / span(one) : 0.5;
-const shown = (value) => String(Number(value.toPrecision(6)));
+const clean = (value) => Number(value.toPrecision(7)); // facts come in single precision
+const shown = (value) => brief(clean(value));
 const word = (one, value) => one.words.length ? one.words[value] ?? "" : shown(value);
 // as a design file has it: inputs have all their digits
 const written = (one, k) => one.words.length ? one.words[one.values[k]] : String(one.values[k]);

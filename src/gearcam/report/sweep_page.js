@@ -30,10 +30,13 @@ function findFront() {
     .map((one) => [columns.get(one.name), Number(one.value)]);
   front = goals.length ? surpassing(goals) : [];
   const heads = [...inputs, ...goals.map(([one]) => one)];
-  const rows = front.slice(0, MOST_ROWS).map((k) => made("tr", {
+  const listed = front.slice(0, MOST_ROWS);
+  const cells = heads.map((one) => one.input ? listed.map((k) => written(one, k))
+    : lined(listed.map((k) => clean(one.values[k]))));
+  const rows = listed.map((k, row) => made("tr", {
     tabIndex: 0, onclick: () => choose(k),
     onkeydown: (event) => { if (event.key === "Enter") choose(k); },
-  }, ...[sweep.numbers[k], ...heads.map((one) => one.input ? written(one, k) : shown(one.values[k]))]
+  }, ...[sweep.numbers[k], ...cells.map((column) => column[row])]
     .map((textContent) => made("td", { textContent }))));
   const more = front.length > MOST_ROWS ? `, the first ${MOST_ROWS} are listed` : "";
   byId("front").replaceChildren(...(rows.length ? [

@@ -70,7 +70,7 @@ def _unit(angle: bool, order: int, *, timed: bool) -> str:
     """Return the unit of a derivative by time, or by the master's angle."""
     if not order:
         return "deg" if angle else "mm"
-    power = "" if order == 1 else f"^{order}"
+    power = "" if order == 1 else str(order)
     return f"{'rad' if angle else 'mm'}/{'s' if timed else 'rad'}{power}"
 
 
