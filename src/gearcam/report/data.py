@@ -72,7 +72,8 @@ def scene_data(scene: Scene) -> dict[str, Any]:
         ``least``, ``largest``, both as texts ``told``, the second with its unit, and where that is:
         ``place`` of the driver, ``body``, ``x`` and ``y`` on it; ``times``, seconds from the first
         place, or null; ``solids`` by name, those that do not move as the body of their name: each
-        with ``axis``, ``turn``, ``x``, ``y`` and ``z``; ``eye`` and ``up``, directions of the first view of solids.
+        with ``axis``, ``turn``, ``x``, ``y`` and ``z``; ``eye`` and ``up``, directions of the first
+        view of solids.
     """
     names = dict.fromkeys(name for one in scene.coloured for name in one.values)
     sizes = [np.abs(one.force[np.isfinite(one.force)]).max(initial=0.0) for one in scene.forces]

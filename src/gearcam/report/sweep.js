@@ -1,4 +1,3 @@
-"use strict";
 // Charts of a sweep: all show the same variants, filtered by ranges of facts.
 const sweep = JSON.parse(document.getElementById("document").textContent);
 const count = sweep.numbers.length;

@@ -1,4 +1,3 @@
-"use strict";
 // What is done on the page of a sweep: goals, a variant that is picked, ranges that are dragged.
 
 // --- the best ------------------------------------------------------------------------------------
