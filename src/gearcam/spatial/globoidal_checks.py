@@ -69,8 +69,7 @@ def undercut(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: ARG00
         if not wall.undercut:
             continue
         yield Remark(
-            f"The rollers cut away a part of the {wall.key} wall at other angles: its spread is "
-            f"below 0."
+            f"The rollers cut away a part of the {wall.key} wall at other angles."
             f"{smaller_roller(wall)}",
             f"{wall.key} wall, {wall.spread.place}",
             wall.spread.value,

@@ -104,7 +104,8 @@ def _radii(result: CamResult) -> dict[str, str]:
         for one in result.cam.motions
     }
     walls = {
-        f"{one.called} before trimming": rho_column("profile", one) for one in result.cam.walls
+        f"{one.called} before trimming" if one.undercut else one.called: rho_column("profile", one)
+        for one in result.cam.walls
     }
     return pitches | walls
 

@@ -241,7 +241,10 @@ _SOLVED: Mapping[str, tuple[str, str]] = {
     "center_distance_mm": ("centre distance", "mm"),
     "module_mm": ("module", "mm"),
     "center_distance_over_scale": ("centre distance in the unit of r1", ""),
-    "center_distance_over_semi_latus_rectum": ("centre distance over semi-latus rectum", ""),
+    "center_distance_over_semi_latus_rectum": (
+        "centre distance over the ellipse's radius at its focus",
+        "",
+    ),
     "side_distance_over_center_distance": ("distance of a side over centre distance", ""),
     "mm_per_unit_of_r1": ("unit of r1", "mm"),
     "growth_per_rad": ("growth of the spiral", "1/rad"),

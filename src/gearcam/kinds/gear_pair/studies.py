@@ -50,7 +50,7 @@ _NOISE: Final = 1e-9
 
 _STUDIED: Final = {
     "center_distance_mm": "centre distance as mounted",
-    "overclosure_deg": "overclosure of the driver",
+    "overclosure_deg": "driver turned ahead by",
     "contact_ratio": "contact ratio",
     "pairs_in_contact": "pairs in contact",
     "interference_steps": "phases with interference",

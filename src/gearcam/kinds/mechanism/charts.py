@@ -25,7 +25,7 @@ _MOST: Final = 9
 _STEADY: Final = 1e-9
 """Range of a pressure angle that does not change, rad."""
 
-_WORDS: Final = ("place", *RATES)
+_WORDS: Final = ("position", *RATES)
 
 
 def _marks(result: MechanismResult) -> tuple[MarkedPlace, ...]:

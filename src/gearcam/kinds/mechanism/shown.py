@@ -28,6 +28,12 @@ Tree = dict[str, Any]
 
 Files = dict[str, bytes]
 
+_DRIVES: Final = {
+    "even": ("an even shaft", "even shafts"),
+    "pair": ("a gear pair", "gear pairs"),
+}
+"""What drives are called, one and several."""
+
 _DIGITS: Final = 10
 """Decimals of a place in degrees above rounding."""
 
@@ -61,9 +67,9 @@ def _called(result: MechanismResult) -> str:
     groups = " + ".join(name for name in parts if name) or "linkage"
     drives = []
     for key, number in Counter(one.key for one in result.design.drive).items():
-        one, several = {"even": ("an even shaft", "even shafts")}.get(key, (f"a {key}", f"{key}s"))
+        one, several = _DRIVES.get(key, (f"a {key}", f"{key}s"))
         drives.append(one if number == 1 else f"{number} {several}")
-    return f"{groups} behind {' and '.join(drives)}"
+    return f"{groups} driven by {' and '.join(drives)}"
 
 
 def _machine(result: MechanismResult) -> Tree:
