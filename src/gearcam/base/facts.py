@@ -18,7 +18,15 @@ from typing import Any, Final
 from gearcam.base.display import ShortRepr, line, renderer
 from gearcam.base.errors import demand_finite
 from gearcam.base.numerals import formatted
-from gearcam.base.readable import ERROR_DIGITS, Scale, against, column, number, readable, scale_for
+from gearcam.base.readable import (
+    ERROR_DIGITS,
+    UnitScale,
+    against,
+    column,
+    number,
+    readable,
+    scale_for,
+)
 
 Tree = dict[str, Any]
 """Facts by key: plain values, `Fact`, lists and groups of them."""
@@ -166,12 +174,12 @@ def text_of(value: Any, unit: str = "", *, noise: float = 0.0, error: float = 0.
     return _in_unit(value, to, noise, error)
 
 
-def _in_unit(value: Any, to: Scale, noise: float, error: float) -> str:
+def _in_unit(value: Any, to: UnitScale, noise: float, error: float) -> str:
     """Return a value as text in a unit."""
     return f"{_texts(value, to, noise, error)} {to.unit}".rstrip()
 
 
-def _texts(value: Any, to: Scale, noise: float, error: float) -> str:
+def _texts(value: Any, to: UnitScale, noise: float, error: float) -> str:
     """Return numbers, lists and ranges as text without their unit."""
     if isinstance(value, Mapping):
         ends = [to.times(one) for one in _settled(_numbers(value), noise)]
@@ -331,9 +339,16 @@ def _plain(name: str, value: Any) -> Iterator[tuple[str, float | str]]:
     elif isinstance(value, list) and value and all(isinstance(one, float) for one in value):
         yield from ((f"{name}.{place}", float(item)) for place, item in enumerate(value))
     elif isinstance(value, list):
-        yield name, ", ".join(one if isinstance(one, str) else formatted(one) for one in value)
+        yield name, ", ".join(map(_joined, value))
     else:
         yield name, float(value) if isinstance(value, float) else value
+
+
+def _joined(value: Any) -> str:
+    """Return an item of a list as a text for tables, with all digits that a record keeps."""
+    if isinstance(value, list | tuple):
+        return " : ".join(map(_joined, value))
+    return str(value) if isinstance(value, bool | str) else formatted(value)
 
 
 def _leaves(tree: Any, path: str = "") -> Iterator[tuple[str, Any]]:

@@ -24,10 +24,10 @@ NOISE: Final = 1e-12
 """Rounding noise relative to the scale."""
 
 FEW: Final = 5
-"""Largest number of significant digits for people."""
+"""Significant digits of numbers that are read: places, and values in messages."""
 
-_GIVEN: Final = 6
-"""Digits of a decimal that is written as it is."""
+TYPED: Final = 6
+"""Significant digits of numbers that may be typed into a file, such as limits."""
 
 _PLAIN: Final = 1e7
 """Larger numbers have an exponent."""
@@ -45,7 +45,7 @@ _WHOLE: Final = 15
 """Length of the shortest text of a double up to which it needs no correction, characters."""
 
 
-def formatted(value: float, digits: int = FEW, scale: float = 0.0) -> str:
+def formatted(value: float, digits: int = TYPED, scale: float = 0.0) -> str:
     """Return a number as text with few significant digits.
 
     Parameters
@@ -53,8 +53,7 @@ def formatted(value: float, digits: int = FEW, scale: float = 0.0) -> str:
     value : float
         Any number; infinity is ``inf``.
     digits : int
-        Largest number of significant digits; trailing zeros are left out. By default a decimal of
-        one digit more is written as it is.
+        Largest number of significant digits; trailing zeros are left out.
     scale : float
         Magnitude relative to which rounding noise is 0, in the unit of `value`; 0 if unknown.
 
@@ -63,9 +62,7 @@ def formatted(value: float, digits: int = FEW, scale: float = 0.0) -> str:
     str
     """
     value = settled(float(value), scale) + 0.0
-    near = float(f"{value:.{_GIVEN}g}")
-    given = digits == FEW and math.isclose(near, value, rel_tol=NOISE)
-    text = f"{value:.{_GIVEN if given else digits}g}"
+    text = f"{value:.{digits}g}"
     plain = "e" in text and 1.0 <= abs(value) < _PLAIN
     return f"{float(text):.0f}" if plain else text
 
@@ -91,7 +88,7 @@ def in_range(value: float, low: float, high: float, digits: int = FEW, scale: fl
 
 
 def told_apart(
-    value: float | None, other: float | None, unit: str = "", digits: int = FEW
+    value: float | None, other: float | None, unit: str = "", digits: int = TYPED
 ) -> tuple[str, str]:
     """Return two numbers with their unit as text, so that numbers that differ look different.
 

@@ -93,7 +93,7 @@ _TURNING: Final = ("deg/s", "deg/s2", "deg/s3")
 
 
 @dataclass(frozen=True)
-class Scale:
+class UnitScale:
     """A unit for numbers: what was in another unit is multiplied by the factor.
 
     Parameters
@@ -117,7 +117,7 @@ class Scale:
         return float(Decimal(repr(float(value))).scaleb(power))
 
 
-def scale_of(size: float, unit: str) -> Scale:
+def scale_of(size: float, unit: str) -> UnitScale:
     """Return the unit in which numbers up to a size are read at a glance.
 
     Parameters
@@ -129,21 +129,21 @@ def scale_of(size: float, unit: str) -> Scale:
 
     Returns
     -------
-    Scale
+    UnitScale
         The same unit if the size is 0, from `LEAST` to below `MOST`, or if no other unit is better;
         else the next one in which it is.
 
     Examples
     --------
     >>> scale_of(123456.0, "mm/s2")
-    Scale(unit='m/s2', factor=0.001)
+    UnitScale(unit='m/s2', factor=0.001)
     >>> scale_of(0.02, "N m").unit, scale_of(40.0, "mm").unit
     ('N mm', 'mm')
     """
     size = abs(size)
     if size == 0.0 or LEAST <= size < MOST:
-        return Scale(unit)
-    choices = [Scale(unit), *_others(unit)]
+        return UnitScale(unit)
+    choices = [UnitScale(unit), *_others(unit)]
     best = min(choices, key=lambda one: (_beyond(size * one.factor), abs(math.log(one.factor))))
     return best if _beyond(size * best.factor) < _HOPELESS else choices[0]
 
@@ -153,26 +153,28 @@ def _beyond(size: float) -> float:
     return max(0.0, math.log10(LEAST / size) - 1e-12, math.log10(size / MOST) + 1e-12)
 
 
-def _others(unit: str) -> Iterator[Scale]:
+def _others(unit: str) -> Iterator[UnitScale]:
     """Yield the other units of what a unit measures."""
     if unit in _KEPT:
         return
     if unit in _TURNING:
         rest = unit.removeprefix("deg")
-        yield from (Scale(f"{name}{rest}", _DEG / size) for name, size in _ladder("rad").items())
+        yield from (
+            UnitScale(f"{name}{rest}", _DEG / size) for name, size in _ladder("rad").items()
+        )
         return
     head, slash, tail = ("", "", "") if _ladder(unit) else unit.partition("/")
     ladder = _ladder(head or unit)
     for name, size in ladder.items():
         if name != (head or unit) and (slash or name not in _UPWARD):
-            yield Scale(f"{name}{slash}{tail}", ladder[head or unit] / size)
+            yield UnitScale(f"{name}{slash}{tail}", ladder[head or unit] / size)
 
 
 def _ladder(unit: str) -> Mapping[str, float]:
     return next((one for one in _LADDERS if unit in one), {})
 
 
-def scale_for(values: Sequence[float], unit: str) -> Scale:
+def scale_for(values: Sequence[float], unit: str) -> UnitScale:
     """Return the unit in which numbers are read at a glance (see `scale_of`).
 
     Short decimals that somebody wrote, as a tolerance of 0.05 mm, keep their unit.
@@ -186,12 +188,12 @@ def scale_for(values: Sequence[float], unit: str) -> Scale:
 
     Returns
     -------
-    Scale
+    UnitScale
     """
     sizes = [abs(float(one)) for one in values]
     size = max(sizes, default=0.0)
     kept = size < LEAST and all(one == 0.0 or _short(one) for one in sizes)
-    return Scale(unit) if kept or not math.isfinite(size) else scale_of(size, unit)
+    return UnitScale(unit) if kept or not math.isfinite(size) else scale_of(size, unit)
 
 
 def _short(value: float) -> bool:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from gearcam.base.findings import ROUNDING, Remark, check
-from gearcam.base.numerals import formatted, rounded_down, settled, shortened
+from gearcam.base.numerals import FEW, formatted, rounded_down, settled, shortened
 from gearcam.base.quantities import ANGLE, LENGTH, Param
 from gearcam.base.readable import readable
 from gearcam.cams.cam import Cam
@@ -161,7 +161,7 @@ def _steep(motion: PitchMotion, kinds: tuple[str, ...], largest: float) -> Itera
         worst = max(angles.low, angles.high, key=lambda end: abs(end.value))
         angle = math.degrees(abs(worst.value))
         yield Remark(
-            f"The pressure angle on the {kind} reaches {formatted(angle)} deg.",
+            f"The pressure angle on the {kind} reaches {readable(angle, 'deg')}.",
             _at(motion, f"{kind}, {motion.carrier.driver.place(worst.theta)}"),
             angle,
             limit=math.degrees(largest),
@@ -234,7 +234,7 @@ def _shocks(cam: Cam, order: int, harm: str) -> Iterator[Remark]:
         by = scale * (jump.after - jump.before)
         told = f"{jump.small}. {_bent(cam, jump)}".rstrip() if jump.slight else f": {harm}"
         yield Remark(
-            f"The {name} jumps by {formatted(by)} {unit}{told}",
+            f"The {name} jumps by {formatted(by, FEW)} {unit}{told}",
             f"at {driver.text(jump.theta)}",
             by,
             severity="note" if jump.slight else None,
@@ -300,7 +300,7 @@ def sharp_profile(cam: Cam, limit: float) -> Iterator[Remark]:
             base, hint = cam.least_base_radius, ""
             if base is not None:
                 base = shortened(base + limit, 1.0)
-                hint = f" With cam.base_radius_mm = {formatted(base)} it keeps the limit."
+                hint = f" With cam.base_radius_mm = {formatted(base, FEW)} it keeps the limit."
             yield Remark(
                 f"The smallest convex radius of the {wall.called} is {formatted(convex, 4)} "
                 f"mm.{hint}",
@@ -396,7 +396,7 @@ def other_profile(followed: tuple[Wall, Followed], limit: float) -> Iterator[Rem
     if off[worst] > most:
         yield Remark(
             f"The lift differs by up to {formatted(scale * float(off[worst]), 4)} {unit} from that "
-            f"of the design, {formatted(scale * (high - low))} {unit}: the profile belongs to "
+            f"of the design, {formatted(scale * (high - low), FEW)} {unit}: the profile belongs to "
             "another wall or another cam, is in another frame, or its file is not in mm and states "
             "no unit.",
             _at(wall, f"at {wall.carrier.driver.text(float(motion.theta[worst]))}"),

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from gearcam.base.findings import ROUNDING, Remark, Severity
-from gearcam.base.numerals import formatted, rounded_down
+from gearcam.base.numerals import FEW, formatted, rounded_down
 from gearcam.base.quantities import ANGLE, COUNT, LENGTH, NUMBER, Param
 from gearcam.base.readable import readable
 from gearcam.gears.cutter import Cutter
@@ -132,8 +132,8 @@ def ratio_positive(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     for place, value, swing in ((low_place, low, 1.0 / low), (high_place, high, high)):
         if swing > limit:
             yield Remark(
-                f"The ratio is {formatted(value)} here: one wheel hardly turns, and its centrode "
-                "comes close to the shaft of the other.",
+                f"The ratio is {formatted(value, FEW)} here: one wheel hardly turns, and its "
+                "centrode comes close to the shaft of the other.",
                 angle_text(place),
                 swing,
             )
@@ -205,7 +205,7 @@ def sharp(subject: CheckedPair, limit: float) -> Iterator[Remark]:
         modules = radius / subject.pair.module
         if modules < limit * (1.0 - ROUNDING):
             yield Remark(
-                f"The centrode has a radius of only {formatted(radius)} mm here. "
+                f"The centrode has a radius of only {formatted(radius, FEW)} mm here. "
                 f"With pair.teeth = {subject.teeth(limit / modules)} or more the limit is kept.",
                 f"wheel {gear.wheel}, {angle_text(place)}",
                 modules,
@@ -223,8 +223,8 @@ def concave_teeth(subject: CheckedPair, limit: float) -> Iterator[Remark]:
         if count < limit and not gear.ring:
             yield Remark(
                 "The teeth are large for this concave part, which has a radius of "
-                f"{formatted(radius)} mm. With pair.teeth = {subject.teeth(limit / count)} or more "
-                "the limit is kept.",
+                f"{formatted(radius, FEW)} mm. With pair.teeth = {subject.teeth(limit / count)} or "
+                "more the limit is kept.",
                 f"wheel {gear.wheel}, {angle_text(place)}",
                 count,
             )
@@ -271,7 +271,7 @@ def pressure_angle(subject: CheckedPair, limit: float) -> Iterator[Remark]:
         )
         yield Remark(
             f"The tooth force {does}: the slope of the centrode adds to the rack's pressure angle "
-            f"of {formatted(math.degrees(subject.pair.rack.pressure_angle))} deg.",
+            f"of {formatted(math.degrees(subject.pair.rack.pressure_angle), FEW)} deg.",
             "; ".join(where),
             math.degrees(largest),
         )

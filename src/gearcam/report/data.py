@@ -14,7 +14,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearcam.base.readable import Scale, column, labelled, readable, scale_of
+from gearcam.base.readable import UnitScale, column, labelled, readable, scale_of
 from gearcam.numeric.arrays import Array, Plane, as_pairs
 from gearcam.numeric.pose import SpacePose
 from gearcam.pictures import drawings
@@ -256,8 +256,8 @@ def _in_easy_units(chart: Chart, *, across: bool) -> tuple[Chart, float]:
     if chart.equal:
         sizes = [max(sizes)] * 2
         across = units[0] == units[1]
-    x = scale_of(sizes[0], units[0]) if across else Scale(units[0])
-    y = scale_of(sizes[1], units[1]) if across or not chart.equal else Scale(units[1])
+    x = scale_of(sizes[0], units[0]) if across else UnitScale(units[0])
+    y = scale_of(sizes[1], units[1]) if across or not chart.equal else UnitScale(units[1])
     if (x.factor, y.factor) == (1.0, 1.0):
         return chart, 1.0
     changed = replace(
@@ -271,7 +271,7 @@ def _in_easy_units(chart: Chart, *, across: bool) -> tuple[Chart, float]:
     return changed, y.factor
 
 
-def _relabelled(label: str, to: Scale) -> str:
+def _relabelled(label: str, to: UnitScale) -> str:
     """Return the label of an axis with another unit."""
     words, unit = labelled(label)
     return f"{words}, {to.unit}" if unit else label

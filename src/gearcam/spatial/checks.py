@@ -93,7 +93,7 @@ def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
         return
     angle = math.degrees(worst.value)
     yield Remark(
-        f"The pressure angle reaches {formatted(angle)} deg, {formatted(worst.x, 4)} mm from the "
+        f"The pressure angle reaches {readable(angle, 'deg')}, {formatted(worst.x, 4)} mm from the "
         "axis.",
         at(worst.theta),
         angle,

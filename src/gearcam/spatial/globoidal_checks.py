@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from gearcam.base.findings import Remark, check
-from gearcam.base.numerals import formatted, shortened
+from gearcam.base.numerals import FEW, formatted, shortened
 from gearcam.base.quantities import ANGLE, LENGTH, Param
 from gearcam.base.readable import readable
 from gearcam.mechanics.clearance import without_clearance
@@ -52,7 +52,7 @@ def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
         return
     angle = math.degrees(worst.value)
     yield Remark(
-        f"The pressure angle reaches {formatted(angle)} deg. A larger index angle reduces it.",
+        f"The pressure angle reaches {formatted(angle, FEW)} deg. A larger index angle reduces it.",
         worst.place,
         angle,
     )
@@ -105,7 +105,7 @@ def loose_turret(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: A
         return
     free = cam.grip < 0.0
     how = "no roller touches a wall" if free else "no roller presses along its whole length"
-    near = formatted(shortened(least, 1.0))
+    near = formatted(shortened(least, 1.0), FEW)
     yield Remark(
         f"At some angles {how} in one of the two directions. With cam.length_mm = {near} there "
         "is always one in both.",

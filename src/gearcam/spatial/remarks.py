@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterator
 
 from gearcam.base.findings import Remark
-from gearcam.base.numerals import formatted, shortened
+from gearcam.base.numerals import FEW, formatted, shortened
 from gearcam.base.readable import readable
 from gearcam.laws.program import Program
 from gearcam.spatial.extremes import Spot
@@ -29,7 +29,7 @@ def smaller_roller(wall: RollerWall) -> str:
     most = wall.allowed_radius
     radius = shortened(most, -1.0) if most > 0.0 else 0.0
     return (
-        f" A roller_radius_mm of up to {formatted(radius)} cuts nothing off."
+        f" A roller_radius_mm of up to {formatted(radius, FEW)} cuts nothing off."
         if radius > 0.0
         else ""
     )

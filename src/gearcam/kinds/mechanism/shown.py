@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.facts import Fact, Facts, extent
-from gearcam.base.numerals import formatted
+from gearcam.base.numerals import FEW, formatted
 from gearcam.kinds.mechanism.asked import DEG, RATES
 from gearcam.kinds.mechanism.names import tables_of, told_parts
 from gearcam.linkages.measures import STILL
@@ -201,7 +201,7 @@ def _fitted(path: PointPath, one: StretchSpec, fit: LineFit | CircleFit) -> Tree
 
 
 def _between(begin: float, end: float) -> str:
-    return f"{formatted(DEG * begin)} to {formatted(DEG * end)} deg"
+    return f"{formatted(DEG * begin, FEW)} to {formatted(DEG * end, FEW)} deg"
 
 
 def _intervals(result: MechanismResult) -> list[Tree] | None:
@@ -299,7 +299,7 @@ def _svg(result: MechanismResult, _: Any) -> Files:
     from gearcam.kinds.mechanism.drawn import legend, picture, shown_at
 
     drawing, labels = picture(result)
-    place = f"{result.driver[0]} = {formatted(math.degrees(shown_at(result)))} deg"
+    place = f"{result.driver[0]} = {formatted(math.degrees(shown_at(result)), FEW)} deg"
     notes = (*result.facts.headline, f"drawn at {place}")
     data = svg_bytes(
         drawing, title=result.design.name, notes=notes, labels=labels, legend=legend(result)

@@ -449,10 +449,10 @@ def test_tables_are_changed_by_their_numbers(key: str, allowed: str, hint: str) 
 @pytest.mark.parametrize(
     ("profile", "called"),
     [
-        ("two_cam_table", "TRT behind 2 cams"),
-        ("oscillating_cylinder", "RTRR behind an even shaft and a slide"),
-        ("geneva", "linkage behind an even shaft"),
-        ("lathe_levers", "RRR + RRT behind a cam"),
+        ("two_cam_table", "table between slides driven by 2 cams"),
+        ("oscillating_cylinder", "cylinder driven by an even shaft and a slide"),
+        ("geneva", "linkage driven by an even shaft"),
+        ("lathe_levers", "coupler and rocker + rod and slide driven by a cam"),
     ],
 )
 def test_all_drives_are_named(profile: str, called: str) -> None:
