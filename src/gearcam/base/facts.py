@@ -22,7 +22,7 @@ from gearcam.base.readable import (
     ERROR_DIGITS,
     UnitScale,
     against,
-    column,
+    ends,
     number,
     readable,
     scale_for,
@@ -182,11 +182,10 @@ def _in_unit(value: Any, to: UnitScale, noise: float, error: float) -> str:
 def _texts(value: Any, to: UnitScale, noise: float, error: float) -> str:
     """Return numbers, lists and ranges as text without their unit."""
     if isinstance(value, Mapping):
-        ends = [to.times(one) for one in _settled(_numbers(value), noise)]
-        low, high = column(ends, to.unit, error=error * to.factor)
+        both = [to.times(one) for one in _settled(_numbers(value), noise)]
+        low, high = ends(both, to.unit, error=error * to.factor)
         if low == high:
             return low
-        low = low if float(low) else "0"
         return f"{low} to {high}" if "max" in value else f"{low}, mean {high}"
     if isinstance(value, list | tuple):
         return " : ".join(_texts(one, to, noise, error) for one in value)
@@ -416,17 +415,18 @@ def _told(fact: Fact, value: Any, unit: str) -> tuple[str, str]:
         text = f"{fact.text} {unit}".rstrip() if fact.text else ""
         limit = "" if bound is None else f"{words} {readable(bound, unit)}"
         return text or text_of(value, unit, noise=noise, error=error), limit
-    ends = _settled(_numbers(value), noise)
-    worst = min(ends, key=lambda one: sign * one)
+    told_of = _settled(_numbers(value), noise)
+    worst = min(told_of, key=lambda one: sign * one)
     kept = sign * worst >= sign * bound or math.isclose(worst, bound, rel_tol=_ROUNDING)
-    to = scale_for([*ends, bound], unit)
+    to = scale_for([*told_of, bound], unit)
     bound = to.times(bound)
     told = [
-        against(to.times(one), bound, to.unit, error=error * to.factor, kept=kept) for one in ends
+        against(to.times(one), bound, to.unit, error=error * to.factor, kept=kept)
+        for one in told_of
     ]
     limit = f"{words} {max((limit for _, limit in told), key=len)}"
-    if kept or len(ends) == 1:
-        return (told[0][0] if len(ends) == 1 else _in_unit(value, to, noise, error)), limit
+    if kept or len(told_of) == 1:
+        return (told[0][0] if len(told_of) == 1 else _in_unit(value, to, noise, error)), limit
     return ", mean ".join(text for text, _ in told), limit
 
 

@@ -279,6 +279,20 @@ def column(values: Sequence[float], unit: str = "", *, error: float = 0.0) -> tu
     )
 
 
+def ends(values: Sequence[float], unit: str = "", *, error: float = 0.0) -> tuple[str, ...]:
+    """Return the ends of a range: as somebody wrote them, or with the same number of decimals.
+
+    Parameters
+    ----------
+    values, unit, error
+        As of `column`; 0, and noise beside the other end, is ``0``.
+    """
+    alone = [number(one, unit, error=error) for one in values]
+    if all(_written(_finite(one)) is not None for one in values):
+        return tuple(alone)
+    return tuple(text if float(text) else "0" for text in column(values, unit, error=error))
+
+
 def _least(value: float, given: Decimal | None, error: float, noise: float) -> float:
     """Return the decimals that a small number needs, as far as it is known and no noise."""
     if abs(value) <= noise:

@@ -277,7 +277,7 @@ def test_the_page_tells_the_facts(capsys: pytest.CaptureFixture[str], tmp_path: 
     run(capsys, ELLIPSE, "--set", "law.eccentricity=0.1,0.2", "-o", str(tmp_path))
     facts = embedded((tmp_path / "compare.html").read_text("utf-8"))["blocks"]["facts"]
     assert "0.8182 to 1.2222" in facts
-    assert "0.666667 to 1.5" in facts
+    assert "0.6667 to 1.5000" in facts
     assert facts.count('class="differs"') > 5
 
 
