@@ -12,7 +12,7 @@ const READ = {
   kept: [0.01, 1e5], // sizes at which a chart keeps the unit that it had
 };
 
-const leadOf = (value) => Number(value.toExponential().split("e")[1]);
+const leadOf = (value) => Number(value.toExponential(6).split("e")[1]);
 
 // The decimal that somebody wrote, or null.
 function writtenOf(value) {
@@ -29,7 +29,7 @@ function decimalsOf(value, unit, digits) {
   const lead = leadOf(value);
   const usual = unit in READ.finest
     ? Math.max(READ.digits, Math.min(READ.digits + 1, lead + 1 + READ.finest[unit]))
-    : READ.digits + (value.toExponential().replace("-", "")[0] === "1");
+    : READ.digits + (value.toExponential(6).replace("-", "")[0] === "1");
   return (digits ?? usual) - 1 - lead;
 }
 

@@ -146,8 +146,9 @@ def root_stress(pair: StressedPair, limit: float) -> Iterator[Remark]:
             continue
         sure = one.safety / (1.0 + one.certificate.error)
         if sure < limit:
+            stress = readable(one.largest, "MPa", error=one.certificate.error * abs(one.largest))
             yield Remark(
-                f"The root of this tooth has a stress of {readable(one.largest, 'MPa')}, within "
+                f"The root of this tooth has a stress of {stress}, within "
                 f"{formatted(100.0 * one.certificate.error, 2)} %, which is taken off the safety.",
                 one.where,
                 sure,

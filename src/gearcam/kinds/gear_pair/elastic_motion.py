@@ -401,6 +401,7 @@ class ElasticRun(PairRun):
                 place="from the middle of the backlash",
                 unit="arcsec",
                 shown=True,
+                error=lag / ARCSEC.factor,
             ),
             "damping_ratio": self._settings.damping_ratio,
             "method": self._settings.method,

@@ -242,7 +242,7 @@ _SOLVED: Mapping[str, tuple[str, str]] = {
     "module_mm": ("module", "mm"),
     "center_distance_over_scale": ("centre distance in the unit of r1", ""),
     "center_distance_over_semi_latus_rectum": (
-        "centre distance over the ellipse's radius at its focus",
+        "centre distance over radius at focus",
         "",
     ),
     "side_distance_over_center_distance": ("distance of a side over centre distance", ""),

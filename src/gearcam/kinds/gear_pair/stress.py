@@ -388,17 +388,18 @@ def _of_wheel(pair: ElasticPair, entries: Entries, stressed: StressedPair, wheel
 
 def _of_root(one: CertifiedRoot, least: float) -> Tree:
     """Return the facts of a certified stress."""
-    made = one.certificate
+    made, mpa = one.certificate, {"unit": "MPa", "shown": True}
+    share, tension, pressed = made.error, made.tension.stress, made.compression.stress
     error = f"within {formatted(100.0 * made.error, 2)} %, {angle_text(one.phi1)}"
     name = f"root of wheel {one.wheel}, tooth {one.tooth}"
     return {
         "tension_mpa": Fact(
-            made.tension.stress, f"tension at the {name}", place=error, unit="MPa", shown=True
+            tension, f"tension at the {name}", place=error, error=share * abs(tension), **mpa
         ),
         "compression_mpa": Fact(
-            made.compression.stress, f"compression at the {name}", unit="MPa", shown=True
+            pressed, f"compression at the {name}", error=share * abs(pressed), **mpa
         ),
-        "von_mises_mpa": made.von_mises,
+        "von_mises_mpa": Fact(made.von_mises, error=share * made.von_mises),
         "error": made.error,
         "tooth": one.tooth,
         "tension_at_mm": [made.tension.point.real, made.tension.point.imag],
