@@ -45,7 +45,8 @@ def chart(unit: str, factor: float, high: float) -> dict[str, Any]:
     line = {"label": "a", "x": [0, 1, 2], "y": [0.0, high, None]}
     return {
         "y": f"acceleration, {unit}", "own": "mm/s2", "factor": factor, "range": [0.0, high],
-        "ends": [[0, 2], [0.0, high]], "lines": [line], "limits": [{"label": "most", "value": high}],
+        "ends": [[0, 2], [0.0, high]], "lines": [line],
+        "limits": [{"label": "most", "value": high}],
     }  # fmt: skip
 
 

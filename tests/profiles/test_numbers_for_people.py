@@ -101,6 +101,6 @@ def test_what_is_always_shown_is_between_a_tenth_and_ten_thousand(name: str) -> 
 def test_other_spellings_would_be_seen() -> None:
     for wrong in ("mm/s^2", "m/s²", "Nm", "°", "µm", "deg/sec", "mm/rad^3"):
         assert not spelt(wrong)
-    assert MISSPELT.search("28.15°") and MISSPELT.search("12 Nm") and MISSPELT.search("3 mm/s^2")
+    assert all(map(MISSPELT.search, ("28.15°", "12 Nm", "3 mm/s^2")))
     assert not MISSPELT.search("12.5 N m at 30 deg")
     assert all(map(spelt, ("m/s2", "km/s3", "N m", "N m/rad", "1/m", "mm/rad", "um", "")))
