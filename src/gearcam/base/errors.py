@@ -21,7 +21,7 @@ from functools import partial
 from typing import Any, Final
 
 from gearcam.base.adjustments import Adjustment
-from gearcam.base.numerals import SHORT, told_apart
+from gearcam.base.numerals import SHORT, TYPED, told_apart
 
 MOST_LISTED: Final = 100
 """Largest number of problems of a file that are listed."""
@@ -166,7 +166,7 @@ class InfeasibleError(GearcamError, ValueError):
         text, numbers = f"{what} ({where})" if where else what, self.numbers(SHORT)
         super().__init__("; ".join(part for part in (text, numbers, nearest) if part))
 
-    def numbers(self, digits: int = 6) -> str:
+    def numbers(self, digits: int = TYPED) -> str:
         """Return value and limit as text, in more `digits` if they would look the same."""
         texts = told_apart(self.value, self.limit, self.unit, digits)
         pairs = zip(("value", "limit"), texts, strict=True)

@@ -20,7 +20,16 @@ from typing import Any, Final
 
 from gearcam.base.display import ShortRepr, line, renderer
 from gearcam.base.errors import demand_finite
-from gearcam.base.numerals import formatted, told_apart
+from gearcam.base.numerals import formatted
+from gearcam.base.readable import (
+    ERROR_DIGITS,
+    UnitScale,
+    against,
+    ends,
+    number,
+    readable,
+    scale_for,
+)
 from gearcam.base.two_names import fact_of
 
 Tree = dict[str, Any]
@@ -61,6 +70,9 @@ _PER: Final = re.compile(r"(?:_(mm|deg|rad))?_per_((?:rad|mm)\d?)$")
 _METHODS: Final = "accuracy.how."
 """Where the names of texts begin that say how errors are estimated."""
 
+_ERRORS: Final = "accuracy."
+"""Where the names of estimated errors begin."""
+
 _LEAVES: Final = (("min", "max"), ("least", "mean"))
 """Keys of mappings that are single values."""
 
@@ -89,7 +101,9 @@ class Fact(ShortRepr):
     noise : float
         Smaller values are rounding noise and shown as 0.
     text : str
-        The value as people read it, without its unit; default: numbers in six digits.
+        The value as people read it, without its unit; default: see `gearcam.base.readable`.
+    error : float
+        Stated error of the numbers, in the same unit: no digit shown is finer; 0 if none is stated.
     """
 
     value: Any
@@ -101,6 +115,7 @@ class Fact(ShortRepr):
     shown: bool = False
     noise: float = 0.0
     text: str = ""
+    error: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -116,15 +131,17 @@ class NamedFact:
     unit, meaning : str
         Unit and label.
     limit : str
-        The limit as text: ``at least 1.1``.
+        The limit as text: ``at least 1.1 mm``, in the unit of the text.
     place : str
         Wheel, tooth, or angle of the value.
     noise : float
         Smaller values are rounding noise.
     shown : bool
         Whether it is always shown.
-    written : str
-        The value as people read it, if the fact gives it.
+    text : str
+        The value as people read it: ``0.4 to 1.6``, ``36 : 36``, ``4.923 mm``.
+    error : float
+        Stated error of the numbers; 0 if none is.
     """
 
     name: str
@@ -135,40 +152,65 @@ class NamedFact:
     place: str
     noise: float
     shown: bool
-    written: str = ""
-
-    @property
-    def text(self) -> str:
-        """The value with its unit: ``0.4 to 1.6``, ``36 : 36``, ``4.92299 mm``."""
-        return f"{self.written or text_of(self.value, self.noise)} {self.unit}".rstrip()
+    text: str = ""
+    error: float = 0.0
 
 
-def text_of(value: Any, noise: float = 0.0, bound: float = math.inf) -> str:
-    """Return a `value` as text, numbers with few digits; smaller than `noise` is 0.
+def text_of(value: Any, unit: str = "", *, noise: float = 0.0, error: float = 0.0) -> str:
+    """Return a `value` with its unit as people read it (see `gearcam.base.readable`).
 
     Parameters
     ----------
     value : object
         Number, text, list or range.
+    unit : str
+        Its unit; it is told in another one where that is easier to read.
     noise : float
         Smaller numbers are 0.
-    bound : float
-        The limit of the numbers, from which they look different if they differ.
+    error : float
+        Stated error of the numbers.
 
     Returns
     -------
     str
     """
+    to = scale_for(_settled(_numbers(value), noise), unit)
+    return _in_unit(value, to, noise, error)
+
+
+def _in_unit(value: Any, to: UnitScale, noise: float, error: float) -> str:
+    """Return a value as text in a unit."""
+    return f"{_texts(value, to, noise, error)} {to.unit}".rstrip()
+
+
+def _texts(value: Any, to: UnitScale, noise: float, error: float) -> str:
+    """Return numbers, lists and ranges as text without their unit."""
     if isinstance(value, Mapping):
-        low, high = (text_of(end, noise, bound) for end in value.values())
+        both = [to.times(one) for one in _settled(_numbers(value), noise)]
+        low, high = ends(both, to.unit, error=error * to.factor)
         if low == high:
             return low
         return f"{low} to {high}" if "max" in value else f"{low}, mean {high}"
     if isinstance(value, list | tuple):
-        return " : ".join(map(text_of, value))
+        return " : ".join(_texts(one, to, noise, error) for one in value)
     if isinstance(value, bool | str):
         return str(value)
-    return _told(0.0 if abs(value) < noise else value, bound)
+    (single,) = _settled([value], noise)
+    return number(to.times(single), to.unit, error=error * to.factor)
+
+
+def _numbers(value: Any) -> list[Any]:
+    """Return all numbers of a value."""
+    if isinstance(value, Mapping):
+        return [one for end in value.values() for one in _numbers(end)]
+    if isinstance(value, list | tuple):
+        return [one for item in value for one in _numbers(item)]
+    return [] if value is None or isinstance(value, bool | str) else [value]
+
+
+def _settled(values: Sequence[Any], noise: float) -> list[Any]:
+    """Return numbers, smaller ones than `noise` as 0."""
+    return [0.0 if noise and abs(one) < noise else one for one in values]
 
 
 class Facts(Mapping[str, Any]):
@@ -316,6 +358,13 @@ def _plain(name: str, value: Any) -> Iterator[tuple[str, float | str]]:
         yield name, float(value) if isinstance(value, float) else value
 
 
+def _joined(value: Any) -> str:
+    """Return an item of a list as a text for tables, with all digits that a record keeps."""
+    if isinstance(value, list | tuple):
+        return " : ".join(map(_joined, value))
+    return str(value) if isinstance(value, bool | str) else formatted(value)
+
+
 def _leaves(tree: Any, path: str = "") -> Iterator[tuple[str, Any]]:
     if _is_group(tree):
         items: Any = tree.items()
@@ -356,25 +405,44 @@ def _is_group(value: Any) -> bool:
 
 def _quantity(name: str, leaf: Any) -> NamedFact:
     fact = leaf if isinstance(leaf, Fact) else Fact(leaf)
-    last = name.rpartition(".")[2]
+    group, _, last = name.rpartition(".")
     end, unit = _unit_of(last)
+    if not unit and isinstance(fact.value, float):  # such as groove_width_mm.outer
+        unit = _unit_of(group.rpartition(".")[2])[1]
     unit = unit if fact.unit is None else fact.unit
     unit = "" if isinstance(fact.value, str) else unit  # words instead of a number
     meaning = fact.meaning or _label(last.removesuffix(end))
-    value, place, noise = _bare(fact), fact.place, fact.noise
-    text, limit = fact.text, ""
-    for words, bound in (("at least", fact.at_least), ("at most", fact.at_most)):
-        if bound is not None:
-            text = text or text_of(value, noise, bound)
-            ends = value.values() if isinstance(value, Mapping) else [value]
-            limit = f"{words} {max((_told(bound, end) for end in ends), key=len)}"
-    return NamedFact(name, value, unit, meaning, limit, place, noise, fact.shown, text)
+    value = _bare(fact)
+    if name.startswith(_ERRORS) and isinstance(value, float):
+        text, limit = readable(value, unit, digits=ERROR_DIGITS), ""
+    else:
+        text, limit = _told(fact, value, unit)
+    more = {"noise": fact.noise, "shown": fact.shown, "error": fact.error, "place": fact.place}
+    return NamedFact(name, value, unit, meaning, limit, text=text, **more)
 
 
-def _told(value: float, other: float) -> str:
-    """Return a number as text; it looks different from another if more than rounding is between."""
-    same = math.isclose(value, other, rel_tol=_ROUNDING)
-    return formatted(value) if same else told_apart(value, other)[0]
+def _told(fact: Fact, value: Any, unit: str) -> tuple[str, str]:
+    """Return the text of a fact and of its limit, with one unit."""
+    bounds = (("at least", 1.0, fact.at_least), ("at most", -1.0, fact.at_most))
+    words, sign, bound = next((one for one in bounds if one[2] is not None), ("", 0.0, None))
+    noise, error = fact.noise, fact.error
+    if fact.text or bound is None:
+        text = f"{fact.text} {unit}".rstrip() if fact.text else ""
+        limit = "" if bound is None else f"{words} {readable(bound, unit)}"
+        return text or text_of(value, unit, noise=noise, error=error), limit
+    told_of = _settled(_numbers(value), noise)
+    worst = min(told_of, key=lambda one: sign * one)
+    kept = sign * worst >= sign * bound or math.isclose(worst, bound, rel_tol=_ROUNDING)
+    to = scale_for([*told_of, bound], unit)
+    bound = to.times(bound)
+    told = [
+        against(to.times(one), bound, to.unit, error=error * to.factor, kept=kept)
+        for one in told_of
+    ]
+    limit = f"{words} {max((limit for _, limit in told), key=len)}"
+    if kept or len(told_of) == 1:
+        return (told[0][0] if len(told_of) == 1 else _in_unit(value, to, noise, error)), limit
+    return ", mean ".join(text for text, _ in told), limit
 
 
 def _label(name: str) -> str:

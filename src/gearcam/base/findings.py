@@ -16,8 +16,9 @@ from typing import Any, Final, Literal, NamedTuple
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import demand_finite
-from gearcam.base.numerals import settled, told_apart
+from gearcam.base.numerals import settled
 from gearcam.base.quantities import NUMBER, Param
+from gearcam.base.readable import against
 
 Severity = Literal["note", "warning", "error"]
 
@@ -72,16 +73,23 @@ class Finding(ShortRepr):
 
     @property
     def text(self) -> str:
-        """The value with its unit, as text: in six digits, or more if the limit has the same."""
-        return told_apart(self.value, self.limit, self.unit)[0]
+        """The value with its unit as people read it, unlike the limit if that is broken."""
+        return self._told[0]
 
     @property
     def limit_text(self) -> str:
         """The limit as text: ``at most 30 deg``."""
         if self.limit is None:
             return ""
-        limit = told_apart(self.value, self.limit, self.unit)[1]
-        return f"{self.relation or ''} {limit}".lstrip()
+        return f"{self.relation or ''} {self._told[1]}".lstrip()
+
+    @property
+    def _told(self) -> tuple[str, str]:
+        """Value and limit as text, with one unit."""
+        sign = {"at most": -1.0, "at least": 1.0}.get(self.relation or "", 0.0)
+        value, limit = self.value, self.limit
+        kept = value is not None and limit is not None and sign * value >= sign * limit != 0.0
+        return against(value, limit, self.unit, kept=kept)
 
     def as_dict(self) -> dict[str, Any]:
         """Return the finding as a dict for JSON, without empty entries."""

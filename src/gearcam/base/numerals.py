@@ -23,6 +23,18 @@ SHORT: Final = 10
 NOISE: Final = 1e-12
 """Rounding noise relative to the scale."""
 
+FEW: Final = 5
+"""Significant digits of numbers that are read: places, and values in messages."""
+
+TYPED: Final = 6
+"""Significant digits of numbers that may be typed into a file, such as limits."""
+
+_PLAIN: Final = 1e7
+"""Larger numbers have an exponent."""
+
+DIGITS: Final = 4
+"""Digits of values that are named as remedies."""
+
 _EVERY: Final = 17
 """Significant digits that tell any two doubles apart."""
 
@@ -33,7 +45,7 @@ _WHOLE: Final = 15
 """Length of the shortest text of a double up to which it needs no correction, characters."""
 
 
-def formatted(value: float, digits: int = 6, scale: float = 0.0) -> str:
+def formatted(value: float, digits: int = TYPED, scale: float = 0.0) -> str:
     """Return a number as text with few significant digits.
 
     Parameters
@@ -49,10 +61,13 @@ def formatted(value: float, digits: int = 6, scale: float = 0.0) -> str:
     -------
     str
     """
-    return f"{settled(float(value), scale) + 0.0:.{digits}g}"
+    value = settled(float(value), scale) + 0.0
+    text = f"{value:.{digits}g}"
+    plain = "e" in text and 1.0 <= abs(value) < _PLAIN
+    return f"{float(text):.0f}" if plain else text
 
 
-def in_range(value: float, low: float, high: float, digits: int = 6, scale: float = 0.0) -> str:
+def in_range(value: float, low: float, high: float, digits: int = FEW, scale: float = 0.0) -> str:
     """Return a place in a range that repeats as text: what reads as its end is its begin.
 
     Parameters
@@ -73,7 +88,7 @@ def in_range(value: float, low: float, high: float, digits: int = 6, scale: floa
 
 
 def told_apart(
-    value: float | None, other: float | None, unit: str = "", digits: int = 6
+    value: float | None, other: float | None, unit: str = "", digits: int = TYPED
 ) -> tuple[str, str]:
     """Return two numbers with their unit as text, so that numbers that differ look different.
 
@@ -164,10 +179,6 @@ def tree(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [tree(item) for item in value]
     return exact(value) if isinstance(value, float) else value
-
-
-DIGITS: Final = 4
-"""Digits of values that are named as remedies."""
 
 
 def shortened(value: float, side: float, digits: int = DIGITS) -> float:

@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from gearcam.base.findings import ROUNDING, Remark, check
-from gearcam.base.numerals import formatted, rounded_down, settled, shortened
+from gearcam.base.numerals import FEW, formatted, rounded_down, settled, shortened
 from gearcam.base.quantities import ANGLE, LENGTH, Param
+from gearcam.base.readable import readable
 from gearcam.cams.cam import Cam
 from gearcam.cams.followers import Follower
 from gearcam.cams.spec import FITTED, FOLLOWED, KIND, PRECISION
@@ -160,7 +161,7 @@ def _steep(motion: PitchMotion, kinds: tuple[str, ...], largest: float) -> Itera
         worst = max(angles.low, angles.high, key=lambda end: abs(end.value))
         angle = math.degrees(abs(worst.value))
         yield Remark(
-            f"The pressure angle on the {kind} reaches {formatted(angle)} deg.",
+            f"The pressure angle on the {kind} reaches {readable(angle, 'deg')}.",
             _at(motion, f"{kind}, {motion.carrier.driver.place(worst.theta)}"),
             angle,
             limit=math.degrees(largest),
@@ -195,7 +196,7 @@ def _undercut(wall: Wall, limit: float) -> Iterator[Remark]:
         left = [pair for pair in left if pair not in inside]
         lost = loss.value * follower.lever
         angle = f" ({formatted(math.degrees(loss.value), 4)} deg)" if follower.angular else ""
-        cut, much = _stretches(inside, text), f"{formatted(lost, 4)} mm{angle}"
+        cut, much = _stretches(inside, text), f"{readable(lost, 'mm')}{angle}"
         yield Remark(
             f"The {wall.called} is {cut}. After trimming it has a corner, on which the follower "
             f"rides from {text(low)} to {text(high)}: "
@@ -233,7 +234,7 @@ def _shocks(cam: Cam, order: int, harm: str) -> Iterator[Remark]:
         by = scale * (jump.after - jump.before)
         told = f"{jump.small}. {_bent(cam, jump)}".rstrip() if jump.slight else f": {harm}"
         yield Remark(
-            f"The {name} jumps by {formatted(by)} {unit}{told}",
+            f"The {name} jumps by {formatted(by, FEW)} {unit}{told}",
             f"at {driver.text(jump.theta)}",
             by,
             severity="note" if jump.slight else None,
@@ -254,7 +255,7 @@ def _bent(cam: Cam, jump: Jump) -> str:
         return ""  # a straight piece below a face
     lead = cam.motions[0]
     lost = settled(lost, lead.follower.lever * lead.program.range[1])
-    loses = f", by which {formatted(lost, 3)} mm of lift is lost" if lost else ""
+    loses = f", by which {readable(lost, 'mm', digits=3)} of lift is lost" if lost else ""
     return f"It bends the profile by {formatted(math.degrees(bend), 3)} deg{loses}."
 
 
@@ -299,7 +300,7 @@ def sharp_profile(cam: Cam, limit: float) -> Iterator[Remark]:
             base, hint = cam.least_base_radius, ""
             if base is not None:
                 base = shortened(base + limit, 1.0)
-                hint = f" With cam.base_radius_mm = {formatted(base)} it keeps the limit."
+                hint = f" With cam.base_radius_mm = {formatted(base, FEW)} it keeps the limit."
             yield Remark(
                 f"The smallest convex radius of the {wall.called} is {formatted(convex, 4)} "
                 f"mm.{hint}",
@@ -319,10 +320,10 @@ def coarse_rows(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     lead = cam.motions[0]
     error = lead.program.errors[0] * lead.follower.lever
     if error > lead.tolerance:
+        known, cut = (readable(one, "mm", digits=3) for one in (error, lead.tolerance))
         yield Remark(
-            f"Between the rows of its table the lift is known to {formatted(error, 3)} mm, the "
-            f"profile is cut to {formatted(lead.tolerance, 3)} mm: the rows are coarse, or they "
-            "scatter.",
+            f"Between the rows of its table the lift is known to {known}, the profile is cut to "
+            f"{cut}: the rows are coarse, or they scatter.",
             "motion",
             error,
             limit=lead.tolerance,
@@ -347,7 +348,7 @@ def lost_motion(cam: Cam, limit: float) -> Iterator[Remark]:
     angle = f" ({formatted(math.degrees(most.value), 4)} deg)" if lead.follower.angular else ""
     if lost > limit:
         yield Remark(
-            f"Between its walls the follower has {formatted(lost, 4)} mm{angle} of lost motion.",
+            f"Between its walls the follower has {readable(lost, 'mm')}{angle} of lost motion.",
             lead.carrier.driver.place(most.theta),
             lost,
         )
@@ -372,8 +373,8 @@ def face_width(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """
     if cam.face_width is not None:
         yield Remark(
-            f"The contact moves up to {formatted(0.5 * cam.face_width, 4)} mm from the middle of "
-            f"each face: faces must be wider than {formatted(cam.face_width, 4)} mm.",
+            f"The contact moves up to {readable(0.5 * cam.face_width, 'mm')} from the middle of "
+            f"each face: faces must be wider than {readable(cam.face_width, 'mm')}.",
             value=cam.face_width,
             unit="mm",
         )
@@ -395,7 +396,7 @@ def other_profile(followed: tuple[Wall, Followed], limit: float) -> Iterator[Rem
     if off[worst] > most:
         yield Remark(
             f"The lift differs by up to {formatted(scale * float(off[worst]), 4)} {unit} from that "
-            f"of the design, {formatted(scale * (high - low))} {unit}: the profile belongs to "
+            f"of the design, {formatted(scale * (high - low), FEW)} {unit}: the profile belongs to "
             "another wall or another cam, is in another frame, or its file is not in mm and states "
             "no unit.",
             _at(wall, f"at {wall.carrier.driver.text(float(motion.theta[worst]))}"),

@@ -12,8 +12,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from gearcam.base.findings import ROUNDING, Remark, Severity
-from gearcam.base.numerals import formatted, rounded_down
+from gearcam.base.numerals import FEW, formatted, rounded_down
 from gearcam.base.quantities import ANGLE, COUNT, LENGTH, NUMBER, Param
+from gearcam.base.readable import readable
 from gearcam.gears.cutter import Cutter
 from gearcam.gears.pair import Gear
 from gearcam.gears.subject import CONTACT_RATIO, CheckedPair, pair_check
@@ -131,8 +132,8 @@ def ratio_positive(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     for place, value, swing in ((low_place, low, 1.0 / low), (high_place, high, high)):
         if swing > limit:
             yield Remark(
-                f"The ratio is {formatted(value)} here: one wheel hardly turns, and its centrode "
-                "comes close to the shaft of the other.",
+                f"The ratio is {formatted(value, FEW)} here: one wheel hardly turns, and its "
+                "centrode comes close to the shaft of the other.",
                 angle_text(place),
                 swing,
             )
@@ -204,7 +205,7 @@ def sharp(subject: CheckedPair, limit: float) -> Iterator[Remark]:
         modules = radius / subject.pair.module
         if modules < limit * (1.0 - ROUNDING):
             yield Remark(
-                f"The centrode has a radius of only {formatted(radius)} mm here. "
+                f"The centrode has a radius of only {formatted(radius, FEW)} mm here. "
                 f"With pair.teeth = {subject.teeth(limit / modules)} or more the limit is kept.",
                 f"wheel {gear.wheel}, {angle_text(place)}",
                 modules,
@@ -222,8 +223,8 @@ def concave_teeth(subject: CheckedPair, limit: float) -> Iterator[Remark]:
         if count < limit and not gear.ring:
             yield Remark(
                 "The teeth are large for this concave part, which has a radius of "
-                f"{formatted(radius)} mm. With pair.teeth = {subject.teeth(limit / count)} or more "
-                "the limit is kept.",
+                f"{formatted(radius, FEW)} mm. With pair.teeth = {subject.teeth(limit / count)} or "
+                "more the limit is kept.",
                 f"wheel {gear.wheel}, {angle_text(place)}",
                 count,
             )
@@ -270,7 +271,7 @@ def pressure_angle(subject: CheckedPair, limit: float) -> Iterator[Remark]:
         )
         yield Remark(
             f"The tooth force {does}: the slope of the centrode adds to the rack's pressure angle "
-            f"of {formatted(math.degrees(subject.pair.rack.pressure_angle))} deg.",
+            f"of {formatted(math.degrees(subject.pair.rack.pressure_angle), FEW)} deg.",
             "; ".join(where),
             math.degrees(largest),
         )
@@ -398,8 +399,8 @@ def undercut(subject: CheckedPair, limit: float) -> Iterator[Remark]:
         if below.any():
             slope = math.sin(gear.toothing.cutter.alpha) * math.cos(gear.toothing.cutter.alpha)
             lost = float((flanks.lowest + gear.toothing.cutter.reach)[below].max()) * slope
-            depth = formatted(lost, 4)
-            message = f"Undercut removes up to {depth} mm of these flanks at the root; {left}."
+            depth = readable(lost, "mm")
+            message = f"Undercut removes up to {depth} of these flanks at the root; {left}."
         yield Remark(
             f"{message} With about {about} teeth this wheel has none.",
             f"wheel {gear.wheel}, teeth {tooth_ranges(teeth)}",
@@ -477,7 +478,7 @@ def tips_collide(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     if passing.margin < 0.0:
         message = (
             "Tips collide outside the mesh: as it enters or leaves the ring, a tip corner of wheel "
-            f"1 overlaps a tooth of the ring by {formatted(-passing.margin)} mm along the pitch "
+            f"1 overlaps a tooth of the ring by {readable(-passing.margin, 'mm')} along the pitch "
             "curve."
         )
     if passing.margin < -0.5 * subject.pair.toothings[1].pitch:  # no tooth is as wide
@@ -521,7 +522,7 @@ def thin_rim(subject: CheckedPair, limit: float) -> Iterator[Remark]:
                     "limit"
                 )
             yield Remark(
-                f"The rim {what} is {formatted(rim)} mm thick; {hint}.",
+                f"The rim {what} is {readable(rim, 'mm')} thick; {hint}.",
                 f"wheel {gear.wheel}",
                 rim / subject.pair.module,
             )

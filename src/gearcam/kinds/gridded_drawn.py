@@ -74,7 +74,7 @@ def pressure_chart(
 
 
 def spread_chart(result: GriddedCam, title: str, places: Mapping[str, float]) -> Chart:
-    """Return the chart of how much the walls spread.
+    """Return the chart of the walls' margin against undercut: how much they spread.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def spread_chart(result: GriddedCam, title: str, places: Mapping[str, float]) ->
             lines.append(Line(label=f"{wall.key} wall, {label}", x=np.degrees(theta), y=spread))
     return over_driver(result)(
         title=title,
-        y="spread, mm",
+        y="margin, mm",
         lines=tuple(lines),
         limits=(Limit(label="undercut", value=0.0),),
     )

@@ -54,7 +54,11 @@ def spread_facts(wall: RollerWall) -> Tree:
     spot = wall.spread
     if math.isinf(spot.value):
         return {}
-    return {"least_spread_mm": Fact(spot.value, "least spread of the wall", place=spot.place)}
+    return {
+        "least_spread_mm": Fact(
+            spot.value, "least margin of the wall against undercut", place=spot.place
+        )
+    }
 
 
 def largest_roller(cam: RollerCam) -> Fact | None:

@@ -15,6 +15,7 @@ from gearcam.base.facts import Fact, Tree, extent
 from gearcam.base.findings import Finding, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import RPM
+from gearcam.base.readable import readable
 from gearcam.dynamics.checks import MovingMachine
 from gearcam.dynamics.motors import ConstantMotor, motor_of
 from gearcam.dynamics.regime import even_torque, flywheel, regime
@@ -455,9 +456,9 @@ class MachineRun(ShortRepr):
         steady = spec.run == REGIME
         works = dict(zip(("motor", "load", "lost"), motion.works, strict=True))
         below, above, power = self.largest(self._driven)
-        worked = f"{formatted(works['motor'], 5)} J in, {formatted(works['load'], 5)} J on loads"
+        worked = f"{readable(works['motor'], 'J')} in, {readable(works['load'], 'J')} on loads"
         if works["lost"]:
-            worked += f", {formatted(works['lost'], 4)} J lost"
+            worked += f", {readable(works['lost'], 'J')} lost"
         turn = "run" if not steady else "turn" if self.machine.turns == 1 else "period"
         whole = abs(motion.lasts) > 0.0 and motion.stopped is None
         return {

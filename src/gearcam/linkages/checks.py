@@ -14,7 +14,7 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.findings import Remark, check
-from gearcam.base.numerals import formatted
+from gearcam.base.numerals import FEW, formatted
 from gearcam.base.quantities import ANGLE, Param
 from gearcam.laws.displacement import Jump
 from gearcam.linkages.elements import BRANCH, Crank
@@ -63,7 +63,7 @@ class CheckedMachine(ShortRepr):
 
 
 def _at(q: float) -> str:
-    return f"at {formatted(math.degrees(q), 6)} deg"
+    return f"at {formatted(math.degrees(q), FEW)} deg"
 
 
 @check(

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from gearcam.base.display import ShortRepr
-from gearcam.base.numerals import formatted
+from gearcam.base.numerals import FEW, formatted
 from gearcam.base.quantities import RPM, SPEED, Quantity, param, params_of
 
 
@@ -49,7 +49,7 @@ class DriveSpec(ShortRepr):
     def words(self, speed: float | None) -> str:
         """Return a `speed`, rad/s or mm/s, in words; empty for None."""
         unit = self.quantity
-        return "" if speed is None else f"{formatted(speed / unit.factor)} {unit.unit}"
+        return "" if speed is None else f"{formatted(speed / unit.factor, FEW)} {unit.unit}"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from gearcam.base.display import ShortRepr
-from gearcam.base.numerals import formatted, in_range
+from gearcam.base.numerals import FEW, formatted, in_range
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,7 +45,7 @@ class DriverAxis(ShortRepr):
 
     def text(self, theta: float) -> str:
         """Return a driver position as text with its unit, with rounding shown as 0."""
-        return f"{formatted(self.scale * theta, scale=self.whole)} {self.unit}"
+        return f"{formatted(self.scale * theta, FEW, scale=self.whole)} {self.unit}"
 
     def place(self, theta: float) -> str:
         """Return a position as text: of a turn its end is its begin."""

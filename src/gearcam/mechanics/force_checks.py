@@ -10,7 +10,7 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.findings import Remark, check
-from gearcam.base.numerals import formatted
+from gearcam.base.numerals import FEW, formatted
 from gearcam.base.quantities import TORQUE, Param
 from gearcam.mechanics.driver_axis import DriverAxis
 from gearcam.mechanics.hertz import CONTACT_PRESSURE
@@ -156,7 +156,7 @@ def contact_pressure(loaded: Loaded, limit: float) -> Iterator[Remark]:
     """
     most = limit or loaded.yielding
     if loaded.on_edge.any():
-        beyond = "" if np.isinf(most) else f", beyond the limit of {formatted(most)} MPa"
+        beyond = "" if np.isinf(most) else f", beyond the limit of {formatted(most, FEW)} MPa"
         why = " where the follower rides on a corner of the profile"
         yield Remark(
             f"The contact pressure is unbounded{beyond}"

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from gearcam.base.findings import Remark, check
-from gearcam.base.numerals import formatted
+from gearcam.base.numerals import FEW, formatted
 from gearcam.base.quantities import NUMBER, Param
 from gearcam.gears.contact import DRIVE
 from gearcam.meshing import drive_checks
@@ -68,9 +68,8 @@ def interference(meshing: Meshing, limit: float) -> Iterator[Remark]:
     worst = int(np.where(np.isfinite(backlash), backlash, np.inf).argmin())
     deepest = -float(backlash[worst])
     limit = meshing.setup.noise
-    where = (
-        f"flanks of both sides overlap, phi1 = {formatted(math.degrees(meshing.phi1[worst]))} deg"
-    )
+    angle = formatted(math.degrees(meshing.phi1[worst]), FEW)
+    where = f"flanks of both sides overlap, phi1 = {angle} deg"
     for block in meshing.blocks:
         overlaps, turning = block.overlaps, meshing.setup.turning
         most = explained(meshing.setup, overlaps)
@@ -86,7 +85,7 @@ def interference(meshing: Meshing, limit: float) -> Iterator[Remark]:
                 )
             )
             angle = math.degrees(block.phi1[overlaps.step[k]])
-            where = f"deepest at phi1 = {formatted(angle)} deg, {one} in {two}"
+            where = f"deepest at phi1 = {formatted(angle, FEW)} deg, {one} in {two}"
     yield Remark(
         f"The wheels overlap at {_at(meshing, hit)}.",
         where,

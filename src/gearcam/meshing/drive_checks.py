@@ -11,7 +11,8 @@ from collections.abc import Iterator
 from typing import Protocol
 
 from gearcam.base.findings import Remark, Severity, check
-from gearcam.base.numerals import formatted
+from gearcam.base.numerals import FEW, formatted
+from gearcam.base.readable import readable
 from gearcam.gears.contact import DRIVE, FlankPairs
 from gearcam.gears.subject import CONTACT_RATIO
 from gearcam.gears.subject import KIND as PAIR_KIND
@@ -38,7 +39,8 @@ def ranges_text(ranges: list[tuple[float, float]]) -> str:
     """Return ranges of driver angles, rad, as text in degrees; with the number of those omitted."""
     degrees = [(math.degrees(a), math.degrees(b)) for a, b in ranges[:_SHOWN]]
     named = [
-        f"{formatted(a)}" if a == b else f"{formatted(a)} to {formatted(b)}" for a, b in degrees
+        f"{formatted(a, FEW)}" if a == b else f"{formatted(a, FEW)} to {formatted(b, FEW)}"
+        for a, b in degrees
     ]
     more = f" and {len(ranges) - _SHOWN} more" if len(ranges) > _SHOWN else ""
     return f"phi1 = {', '.join(named)} deg{more}"
@@ -95,10 +97,11 @@ def contact_ratio(subject: Sided, limit: float) -> Iterator[Remark]:
         message = _FEW
         if gaps and all(stretch.edges for stretch in gaps):
             apart = max(stretch.apart for stretch in gaps)
+            off = readable(apart, "mm", digits=3)
             message = (
                 f"No flanks touch at {arcs_text(gaps)}{_repeats(pairs)}. There tooth edges drive: "
-                f"they scrape, and the driven wheel is up to {formatted(apart, 3)} mm off its "
-                "position along the pitch curve."
+                f"they scrape, and the driven wheel is up to {off} off its position along the "
+                "pitch curve."
             )
         elif gaps:
             message = (

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.findings import Remark, check
-from gearcam.base.numerals import formatted
+from gearcam.base.numerals import FEW, formatted
 from gearcam.base.quantities import ARCSEC, Param
 from gearcam.meshing.errors import Running
 from gearcam.meshing.settings import ERRORS
@@ -65,7 +65,7 @@ def interference(together: Running, limit: float) -> Iterator[Remark]:  # noqa: 
         phi1, depth = together.interference
         yield Remark(
             "With its errors tips reach into roots or fillets of the other wheel.",
-            f"phi1 = {formatted(math.degrees(phi1))} deg",
+            f"phi1 = {formatted(math.degrees(phi1), FEW)} deg",
             depth,
             limit=0.0,
         )
@@ -103,4 +103,4 @@ def nothing_touches(together: Running, limit: float) -> Iterator[Remark]:  # noq
 
 
 def _place(together: Running, phase: int) -> str:
-    return f"phi1 = {formatted(math.degrees(together.phi1[phase]))} deg"
+    return f"phi1 = {formatted(math.degrees(together.phi1[phase]), FEW)} deg"

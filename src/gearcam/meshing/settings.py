@@ -92,7 +92,7 @@ class MeshingSpec(ShortRepr):
         excluded(
             "overclosure",
             0,
-            why="without an overclosure no flanks overlap, and the study finds no contact",
+            why="unless the driver is turned ahead no flanks overlap: no contact is found",
             allowed="-1 to 1, but not 0; 0.005 is usual",
         ),
         distinct("teeth", "tooth"),

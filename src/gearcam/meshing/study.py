@@ -426,7 +426,7 @@ def _outlines(
     )
     least = float(np.degrees(spec.overclosure)) * max(lost, many)
     what, note = (
-        f"the overclosure is too small: {reason}",
+        f"the driver is turned ahead too little: {reason}",
         f"{formatted(ABOVE * least, 3)} deg is enough",
     )
     raise beyond_limit(

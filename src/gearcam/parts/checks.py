@@ -17,6 +17,7 @@ from gearcam.base.display import ShortRepr
 from gearcam.base.findings import ROUNDING, Remark, check
 from gearcam.base.numerals import decimal, formatted
 from gearcam.base.quantities import LENGTH, Param
+from gearcam.base.readable import readable
 from gearcam.numeric.arrays import Plane, as_pairs
 from gearcam.numeric.polygons import nearest
 from gearcam.parts.blank import KIND
@@ -93,7 +94,7 @@ def thin_wall(subject: CheckedParts, limit: float) -> Iterator[Remark]:
         width, what = min(walls)
         if width < limit * (1.0 - ROUNDING):
             yield Remark(
-                f"The wall between the {what} is {formatted(width, 4)} mm thick.", name, width
+                f"The wall between the {what} is {readable(width, 'mm')} thick.", name, width
             )
 
 
@@ -183,7 +184,7 @@ def wide_kerf(subject: CheckedParts, _: float) -> Iterator[Remark]:
         left = "leaves metal there, also on flanks" if uncut else "leaves metal there"
         yield Remark(
             f"A kerf of {formatted(subject.kerf, 4)} mm is too wide for {_tightest(tools)}, which "
-            f"has room for {formatted(tools.diameter, 4)} mm: the cutter {left}.",
+            f"has room for {readable(tools.diameter, 'mm')}: the cutter {left}.",
             name,
             subject.kerf,
             severity="error" if uncut else "warning",
@@ -220,7 +221,7 @@ def _largest(diameter: float) -> str:
     if not diameter:
         return "No round tool reaches all of the outline"
     return (
-        f"A round tool of up to {formatted(diameter, 4)} mm in diameter reaches all of the outline"
+        f"A round tool of up to {readable(diameter, 'mm')} in diameter reaches all of the outline"
     )
 
 

@@ -18,6 +18,8 @@ function replaced(shown, next) {
   document.title = next.title;
   const { leading = [], ...others } = next;
   const drafted = new Map(leading.map((one) => [one.name, one]));
-  const charts = shown.charts.map((one) => drafted.get(one.name) ?? one);
-  return { ...shown, charts, ...others, blocks };
+  const former = new Map(shown.charts.map((one) => [one.name, one]));
+  const charts = (next.charts ?? shown.charts.map((one) => drafted.get(one.name) ?? one))
+    .map((one) => inUnitOf(one, former.get(one.name)));
+  return { ...shown, ...others, charts, blocks };
 }

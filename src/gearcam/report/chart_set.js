@@ -40,7 +40,7 @@ class Charts {
     if (more) {
       const count = charts.filter(folded).length;
       more.hidden = !count;
-      more.querySelector("summary").textContent = `${count} more charts`;
+      more.querySelector("summary").textContent = `${count} more ${count === 1 ? "chart" : "charts"}`;
       this.home.append(more);
     }
     for (const view of this.views) this.sight.observe(view.figure);

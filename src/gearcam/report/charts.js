@@ -17,8 +17,6 @@ const FLAT = 1e-9; // a line that changes less, relative to its size, has no lar
 const SHORT = 2.5; // decades on an axis with ticks between powers of ten
 const LETTERS = 12; // height of a line of text in a chart, pixels
 
-const brief = (value) => String(Number(value.toPrecision(5)));
-
 // Numbers at an axis without rounding errors, however small the steps are.
 const ticks = (_, values, axis, space, step) =>
   values.map((value) => String(Number((Math.round(value / step) * step).toPrecision(12))));

@@ -9,16 +9,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import Any, Final
 
 import numpy as np
 
-from gearcam.base.numerals import formatted
+from gearcam.base.readable import UnitScale, column, labelled, readable, scale_of
 from gearcam.numeric.arrays import Array, Plane, as_pairs
 from gearcam.numeric.pose import SpacePose
 from gearcam.pictures import drawings
-from gearcam.pictures.charts import Chart
+from gearcam.pictures.charts import Chart, Handle
 from gearcam.pictures.scenes import (
     SAGITTA,
     ColouredCurve,
@@ -62,7 +62,7 @@ def scene_data(scene: Scene) -> dict[str, Any]:
         the bounding box of all places as left, bottom, right, top; ``pitch``, flat points or null;
         ``contacts`` by name, each with ``start``, ``x``, ``y``, ``fx``, ``fy`` and ``teeth`` or
         null; ``forces``, each with ``name``, ``x``, ``y``, and ``fx`` and ``fy``, shares of the
-        largest of all forces, null where there is none; ``largest_force``, that of them, N, or
+        largest of all forces, null where there is none; ``largest_force``, that of them as text, or
         null; ``bodies``, each with ``name`` and ``called``, ``link`` (whether it is a link of a
         machine), ``metal`` and ``floor`` (closed chains, filled by the even-odd rule), ``plates``
         (index in ``metal`` of the first chain of each of several plates), ``lines`` (``layer``,
@@ -70,10 +70,11 @@ def scene_data(scene: Scene) -> dict[str, Any]:
         ``teeth`` (``[first, last]`` vertices of ``metal[0]``) or null, and ``names`` (``text``,
         ``x`` and ``y`` in the body's frame) and ``handles`` (x and y by name); ``coloured``, each
         with ``body``, ``points`` and ``values`` by label; ``scales`` by label, each with
-        ``least``, ``largest``, and where that is: ``place`` of the driver, ``body``, ``x`` and
-        ``y`` on it; ``times``, seconds from the first place, or null; ``solids`` by name, those
-        that do not move as the body of their name: each with ``axis``, ``turn``, ``x``, ``y`` and
-        ``z``; ``eye`` and ``up``, directions of the first view of solids.
+        ``least``, ``largest``, both as texts ``told``, the second with its unit, and where that is:
+        ``place`` of the driver, ``body``, ``x`` and ``y`` on it; ``times``, seconds from the first
+        place, or null; ``solids`` by name, those that do not move as the body of their name: each
+        with ``axis``, ``turn``, ``x``, ``y`` and ``z``; ``eye`` and ``up``, directions of the first
+        view of solids.
     """
     names = dict.fromkeys(name for one in scene.coloured for name in one.values)
     sizes = [np.abs(one.force[np.isfinite(one.force)]).max(initial=0.0) for one in scene.forces]
@@ -89,7 +90,7 @@ def scene_data(scene: Scene) -> dict[str, Any]:
         "contacts": {name: _contacts(one) for name, one in scene.contacts.items()},
         "pitch": None if scene.pitch is None else _flat(scene.pitch),
         "forces": [_force(one, largest) for one in scene.forces],
-        "largest_force": formatted(largest) if largest else None,
+        "largest_force": readable(largest, "N") if largest else None,
         "coloured": [_coloured(one) for one in scene.coloured],
         "scales": {name: _scale(name, scene.coloured) for name in names},
         "times": None if scene.times is None else _digits(scene.times - scene.times[0], _OF_TIME),
@@ -173,13 +174,17 @@ def _coloured(curve: ColouredCurve) -> dict[str, Any]:
 
 def _scale(name: str, curves: Sequence[ColouredCurve]) -> dict[str, Any]:
     """Return the scale of a quantity on all curves, from its least to its largest value."""
-    own = [one for one in curves if name in one.values]
-    highest = max(own, key=lambda one: float(np.nanmax(one.values[name])))
+    those = [one for one in curves if name in one.values]
+    highest = max(those, key=lambda one: float(np.nanmax(one.values[name])))
     k = int(np.nanargmax(highest.values[name]))
     x, y = _flat(highest.points[k : k + 1])
-    ends = min(float(np.nanmin(one.values[name])) for one in own), highest.values[name][k]
+    lowest = min(float(np.nanmin(one.values[name])) for one in those)
+    ends = lowest, float(highest.values[name][k])
     least, largest = _digits(np.array(ends))
+    to = scale_of(max(map(abs, ends)), labelled(name)[1])
+    low, high = column([to.factor * one for one in ends], to.unit)
     return {
+        "told": [low, f"{high} {to.unit}".rstrip()],
         "least": least,
         "largest": largest,
         "place": round(float(highest.places[k]), _MM),
@@ -190,7 +195,9 @@ def _scale(name: str, curves: Sequence[ColouredCurve]) -> dict[str, Any]:
 
 
 def chart_data(name: str, chart: Chart, driver: str) -> dict[str, Any]:
-    """Return the data of a chart.
+    """Return the data of a chart, its axes in units that are easy to read.
+
+    The axis of the driver keeps its own, as the parts move over it.
 
     Parameters
     ----------
@@ -209,9 +216,12 @@ def chart_data(name: str, chart: Chart, driver: str) -> dict[str, Any]:
         (of the vertical axis, including the limits near the lines), ``ends`` (of both axes, with
         margins), ``lines`` (``label``, ``x``, ``y``, ``dots``), ``limits`` (``label``, ``value``,
         ``seen``: whether it is within the range), ``marks`` on the horizontal axis (``label``,
-        ``value``) and ``handles`` (``x``, ``y`` and ``keys``, the changes of
-        numbers by key for a unit of each axis).
+        ``value``), ``handles`` (``x``, ``y`` and ``keys``, the changes of numbers by key for a unit
+        of each axis), ``own``, the unit of the values in Python, and ``factor`` of the vertical
+        axis.
     """
+    moves, own = chart.x == driver, labelled(chart.y)[1]
+    chart, factor = _in_easy_units(chart, across=not moves)
     low, high = chart.range
     across, up = (_significant if axis in chart.log else _digits for axis in "xy")
     return {
@@ -221,7 +231,9 @@ def chart_data(name: str, chart: Chart, driver: str) -> dict[str, Any]:
         "y": chart.y,
         "log": chart.log,
         "equal": chart.equal,
-        "moves": chart.x == driver,
+        "moves": moves,
+        "own": own,
+        "factor": factor,
         "range": [low, high],
         "ends": chart.ends,
         "lines": [
@@ -235,6 +247,49 @@ def chart_data(name: str, chart: Chart, driver: str) -> dict[str, Any]:
         "marks": [{"label": one.label, "value": one.value} for one in chart.marks],
         "handles": [asdict(one) for one in chart.handles],
     }
+
+
+def _in_easy_units(chart: Chart, *, across: bool) -> tuple[Chart, float]:
+    """Return a chart with its axes in units that are easy to read, and the factor of the vertical.
+
+    Parameters
+    ----------
+    chart : Chart
+        A chart.
+    across : bool
+        Whether the unit of the horizontal axis may change. Axes of one scale have one unit.
+    """
+    sizes = [max(map(abs, chart.ends[0])), max(map(abs, chart.range))]
+    units = [labelled(label)[1] for label in (chart.x, chart.y)]
+    if chart.equal:
+        sizes = [max(sizes)] * 2
+        across = units[0] == units[1]
+    x = scale_of(sizes[0], units[0]) if across else UnitScale(units[0])
+    y = scale_of(sizes[1], units[1]) if across or not chart.equal else UnitScale(units[1])
+    if (x.factor, y.factor) == (1.0, 1.0):
+        return chart, 1.0
+    changed = replace(
+        chart,
+        x=_relabelled(chart.x, x),
+        y=_relabelled(chart.y, y),
+        lines=tuple(replace(one, x=x.factor * one.x, y=y.factor * one.y) for one in chart.lines),
+        limits=tuple(replace(one, value=y.times(one.value)) for one in chart.limits),
+        marks=tuple(replace(one, value=x.times(one.value)) for one in chart.marks),
+        handles=tuple(_scaled(one, x, y) for one in chart.handles),
+    )
+    return changed, y.factor
+
+
+def _scaled(one: Handle, x: UnitScale, y: UnitScale) -> Handle:
+    """Return a handle on axes in other units."""
+    keys = {key: (by / x.factor, up / y.factor) for key, (by, up) in one.keys.items()}
+    return Handle(x=x.times(one.x), y=y.times(one.y), keys=keys)
+
+
+def _relabelled(label: str, to: UnitScale) -> str:
+    """Return the label of an axis with another unit."""
+    words, unit = labelled(label)
+    return f"{words}, {to.unit}" if unit else label
 
 
 def _steady(values: Array, decimals: int) -> list[float | None] | float:

@@ -210,7 +210,7 @@ function offer() {
   const dashed = new Set(lines.map((line) => line.layer));
   const teeth = scene.bodies.some((body) => body.teeth);
   const named = scene.bodies.some((body) => body.names.length);
-  const forces = scene.largest_force && `forces in joints, up to ${scene.largest_force} N`;
+  const forces = scene.largest_force && `forces in joints, up to ${scene.largest_force}`;
   const own = [teeth, Boolean(scene.pitch), named, forces];
   const wanted = JSON.stringify([sets.toSorted(), [...dashed].sort(), ...own]);
   if (wanted === offered) return;
@@ -272,13 +272,12 @@ function legend() {
   const home = element("scale");
   home.replaceChildren();
   if (!scale) return;
-  const unit = seen.colouring.split(", ")[1];
-  const range = add(home, "span", {}, brief(scale.least));
+  const range = add(home, "span", {}, scale.told[0]);
   const bar = add(range, "span", { class: "bar", "aria-hidden": "true" });
   for (let k = 1; k <= LEVELS; k++) add(bar, "i", { style: `background: var(--level-${k})` });
-  range.append(`${brief(scale.largest)} ${unit}`);
+  range.append(scale.told[1]);
   const [name, measure] = scene.driver.split(", ");
-  add(home, "span", { class: "most" }, `largest at ${name} = ${brief(scale.place)} ${measure}`);
+  add(home, "span", { class: "most" }, `largest at ${name} = ${brief(scale.place, measure)} ${measure}`);
 }
 
 function listen() {

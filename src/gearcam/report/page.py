@@ -44,6 +44,7 @@ DRAFT_PLACES: Final = 120
 
 _CHARTS: Final = (
     "uPlot/uPlot.iife.min.js",
+    "numbers.js",
     "parts.js",
     "saves.js",
     "chart_saves.js",
@@ -164,7 +165,7 @@ def sweep_page(title: str, words: Mapping[str, Any], content: Mapping[str, Any])
         "title": title,
         "data": _embedded(content),
         "style": _contents("page.css", "sweep.css"),
-        "script": _contents("sweep.js", "sweep_best.js", "sweep_page.js"),
+        "script": _contents("numbers.js", "sweep.js", "sweep_best.js", "sweep_page.js"),
     }
     return rendered("sweep.html", values | dict(words)).encode()
 
@@ -322,7 +323,7 @@ def _errors(result: Result, facts: Facts) -> Iterator[tuple[str, str]]:
     for label, names in result.main_errors:
         rows = (facts.quantity(f"accuracy.{name}") for name in names)
         largest = max(rows, key=lambda one: one.value)
-        yield label, f"{formatted(largest.value, 2)} {largest.unit}".rstrip()
+        yield label, largest.text
 
 
 def _pictures(result: Result) -> Iterator[tuple[str, str]]:

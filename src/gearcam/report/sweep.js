@@ -1,4 +1,3 @@
-"use strict";
 // Charts of a sweep: all show the same variants, filtered by ranges of facts.
 const sweep = JSON.parse(document.getElementById("document").textContent);
 const count = sweep.numbers.length;
@@ -27,8 +26,8 @@ const inputs = all.filter((one) => one.input);
 const columns = new Map(all.filter((one) => one.differs).map((one) => [one.name, one]));
 const span = (one) => one.high > one.low ? one.high - one.low : 1;
 const share = (one, value) => one.high > one.low ? (value - one.low) / span(one) : 0.5;
-const DIGITS = 5;  // significant
-const shown = (value) => String(Number(value.toPrecision(DIGITS)));
+const clean = (value) => Number(value.toPrecision(7)); // facts come in single precision
+const shown = (value) => brief(clean(value));
 const word = (one, value) => one.words.length ? one.words[value] ?? "" : shown(value);
 const titled = (one) => one.unit ? `${one.label}, ${one.unit}` : one.label;
 const measure = (one, value) => one.unit ? `${word(one, value)} ${one.unit}` : word(one, value);
@@ -36,13 +35,12 @@ const measure = (one, value) => one.unit ? `${word(one, value)} ${one.unit}` : w
 const written = (one, k) => one.words.length ? one.words[one.values[k]] : String(one.values[k]);
 
 /** Return a value for a column of numbers: with the decimals that its largest one needs. */
-function lined(one, k) {
+function cellOf(one, k) {
   const value = one.values[k];
   if (one.words.length || Number.isNaN(value)) return word(one, value);
   if (one.values.every((each) => Number.isNaN(each) || Number.isInteger(each))) return String(value);
   const most = Math.max(Math.abs(one.low), Math.abs(one.high));
-  const decimals = DIGITS - 1 - Math.floor(Math.log10(most));
-  return decimals < 0 || decimals > 8 ? shown(value) : value.toFixed(decimals);
+  return lined([value, most].map(clean), one.unit)[0];
 }
 
 // --- which variants ------------------------------------------------------------------------------

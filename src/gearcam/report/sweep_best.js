@@ -62,7 +62,7 @@ function findFront() {
     tabIndex: 0, onclick: () => choose(k),
     onkeydown: (event) => { if (event.key === "Enter" && event.target === event.currentTarget) choose(k); },
   }, made("td", { textContent: sweep.numbers[k] }), ...(pictured ? [made("td", {}, ...pictureOf(k))] : []),
-  ...heads.map((one) => made("td", { textContent: lined(one, k),
+  ...heads.map((one) => made("td", { textContent: cellOf(one, k),
     className: bests.has(one) && one.values[k] === bests.get(one) ? "number most" : "number" })),
   made("td", { textContent: names.get(k) ?? "" }), made("td", {}, linkTo(k)));
   const more = front.length > MOST_ROWS ? `, the first ${MOST_ROWS} are listed` : "";

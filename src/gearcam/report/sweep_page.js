@@ -21,8 +21,8 @@ function choose(k) {
     made("p", {}, made("strong", { textContent: `Variant ${sweep.numbers[k]}` }),
       `${names.has(k) ? `, ${names.get(k)}` : ""}: ${told}`),
     ...pictureOf(k),
-    table(inputs.map((one) => [one, lined(one, k)])),
-    made("div", { className: "facts" }, table(facts.map((one) => [one, lined(one, k)]))),
+    table(inputs.map((one) => [one, cellOf(one, k)])),
+    made("div", { className: "facts" }, table(facts.map((one) => [one, cellOf(one, k)]))),
     made("p", {}, link, " ", copy, " then ", made("code", { textContent: `gearcam build ${name}.toml` })),
     made("details", {}, made("summary", { textContent: "The file" }), made("pre", { textContent: text })));
   if (columns.size) draw();

@@ -16,7 +16,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.errors import InfeasibleError
-from gearcam.base.facts import Facts
+from gearcam.base.facts import Facts, NamedFact
 from gearcam.base.numerals import formatted
 from gearcam.pictures.drawings import Path
 from gearcam.sheets.board import Board
@@ -115,12 +115,18 @@ def sheet_rows(facts: Facts, names: Sequence[str]) -> dict[str, str]:
     """Return the rows of a drawing's table: the quantities `names` that exist in `facts`."""
     by_name = {one.name: one for one in facts.quantities()}
     named = [by_name[name] for name in names if name in by_name]
-    return {
-        one.meaning: " : ".join(formatted(part, _FEW) for part in one.value) + f" {one.unit}"
-        if isinstance(one.value, list)
-        else one.text
-        for one in named
-    }
+    return {one.meaning: _row_text(one) for one in named}
+
+
+def _row_text(fact: NamedFact) -> str:
+    """Return a fact as a text for a drawing, which keeps the unit of its name."""
+    value, unit = fact.value, fact.unit
+    if isinstance(value, list):
+        return f"{' : '.join(formatted(part, _FEW) for part in value)} {unit}".rstrip()
+    if isinstance(value, Mapping):
+        ends = [formatted(end) for end in value.values()]
+        return f"{' to '.join(dict.fromkeys(ends))} {unit}".rstrip()
+    return f"{formatted(value)} {unit}".rstrip() if isinstance(value, float) else fact.text
 
 
 def begin(size: complex, room: Box, low: complex, rows: int) -> Board:

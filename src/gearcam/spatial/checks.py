@@ -12,6 +12,7 @@ from typing import Final
 from gearcam.base.findings import Limits, Remark, check, limit_of
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import ANGLE, LENGTH, Param
+from gearcam.base.readable import readable
 from gearcam.mechanics.clearance import without_clearance
 from gearcam.spatial.cam import SpatialCam
 from gearcam.spatial.guides import Straight, SwingArm
@@ -92,7 +93,7 @@ def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
         return
     angle = math.degrees(worst.value)
     yield Remark(
-        f"The pressure angle reaches {formatted(angle)} deg, {formatted(worst.x, 4)} mm from the "
+        f"The pressure angle reaches {readable(angle, 'deg')}, {formatted(worst.x, 4)} mm from the "
         "axis.",
         at(worst.theta),
         angle,
@@ -128,11 +129,12 @@ def undercut(subject: Subject, limit: float) -> Iterator[Remark]:
             f"The roller cuts the {wall.key} wall at other angles, so little that no lift is lost."
         )
         if lost > 0.0:
+            depth = readable(loss.depth.value, "mm", digits=3)
+            beyond = readable(lost, "mm", digits=3)
             cut = (
-                f"The roller cuts up to {formatted(loss.depth.value, 3)} mm off the {wall.key} "
-                "wall at other angles. The roller then rests on an edge: if only this place on it "
-                f"touched, the follower could move by {formatted(lost, 3)} mm{angle} beyond its "
-                "lift."
+                f"The roller cuts up to {depth} off the {wall.key} wall at other angles. The "
+                "roller then rests on an edge: if only this place on it touched, the follower "
+                f"could move by {beyond}{angle} beyond its lift."
             )
         gone = "" if loss.gone is None else f" Nothing is left of the wall made {at(loss.gone)}."
         yield Remark(
@@ -152,7 +154,7 @@ def carved_solid(subject: tuple[int, float], limit: float) -> Iterator[Remark]: 
     count, height = subject
     yield Remark(
         f"A wall is undercut: the solid is the blank less {count} positions of the roller, by "
-        f"manifold3d. Scallops between them are up to {formatted(height, 3)} mm high.",
+        f"manifold3d. Scallops between them are up to {readable(height, 'mm', digits=3)} high.",
         value=height,
     )
 
@@ -173,7 +175,7 @@ def lost_motion(subject: Subject, limit: float) -> Iterator[Remark]:
     if lost is None or lost.value <= limit:
         return
     yield Remark(
-        f"The follower can move by {formatted(lost.value, 4)} mm while the cam does not.",
+        f"The follower can move by {readable(lost.value, 'mm')} while the cam does not.",
         at(lost.theta),
         lost.value,
     )
@@ -216,7 +218,7 @@ def thin_wall(subject: Subject, limit: float) -> Iterator[Remark]:
     for where, (side, thickness) in places.items():
         if side in (0, *cam.sides) and thickness < limit:
             yield Remark(
-                f"The metal {where} is {formatted(thickness, 4)} mm thick.", where, thickness
+                f"The metal {where} is {readable(thickness, 'mm')} thick.", where, thickness
             )
 
 

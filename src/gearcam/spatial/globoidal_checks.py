@@ -10,8 +10,9 @@ from collections.abc import Iterator
 from typing import Final
 
 from gearcam.base.findings import Remark, check
-from gearcam.base.numerals import formatted, shortened
+from gearcam.base.numerals import FEW, formatted, shortened
 from gearcam.base.quantities import ANGLE, LENGTH, Param
+from gearcam.base.readable import readable
 from gearcam.mechanics.clearance import without_clearance
 from gearcam.spatial.globoidal import GloboidalCam
 from gearcam.spatial.remarks import shocks, smaller_roller, thin_rib
@@ -51,7 +52,7 @@ def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
         return
     angle = math.degrees(worst.value)
     yield Remark(
-        f"The pressure angle reaches {formatted(angle)} deg. A larger index angle reduces it.",
+        f"The pressure angle reaches {formatted(angle, FEW)} deg. A larger index angle reduces it.",
         worst.place,
         angle,
     )
@@ -68,8 +69,7 @@ def undercut(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: ARG00
         if not wall.undercut:
             continue
         yield Remark(
-            f"The rollers cut away a part of the {wall.key} wall at other angles: its spread is "
-            f"below 0."
+            f"The rollers cut away a part of the {wall.key} wall at other angles."
             f"{smaller_roller(wall)}",
             f"{wall.key} wall, {wall.spread.place}",
             wall.spread.value,
@@ -86,7 +86,7 @@ def carved_solid(subject: tuple[int, float], limit: float) -> Iterator[Remark]: 
     count, height = subject
     yield Remark(
         f"A wall is undercut: the rib is what the rollers leave at {count} cam angles in a turn, "
-        f"by manifold3d. Scallops between them are up to {formatted(height, 3)} mm high.",
+        f"by manifold3d. Scallops between them are up to {readable(height, 'mm', digits=3)} high.",
         value=height,
     )
 
@@ -105,7 +105,7 @@ def loose_turret(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: A
         return
     free = cam.grip < 0.0
     how = "no roller touches a wall" if free else "no roller presses along its whole length"
-    near = formatted(shortened(least, 1.0))
+    near = formatted(shortened(least, 1.0), FEW)
     yield Remark(
         f"At some angles {how} in one of the two directions. With cam.length_mm = {near} there "
         "is always one in both.",
@@ -130,7 +130,7 @@ def lost_motion(subject: Subject, limit: float) -> Iterator[Remark]:
     lost = subject[0].lost_motion
     if lost.value > limit:
         yield Remark(
-            f"A roller can move by {formatted(lost.value, 4)} mm while the cam does not.",
+            f"A roller can move by {readable(lost.value, 'mm')} while the cam does not.",
             lost.place,
             lost.value,
         )
@@ -163,7 +163,7 @@ def thin_wall(subject: Subject, limit: float) -> Iterator[Remark]:
     core = cam.distance - cam.floor - bore
     if bore and core < limit:
         yield Remark(
-            f"The metal between the core and the bore is {formatted(core, 4)} mm thick.",
+            f"The metal between the core and the bore is {readable(core, 'mm')} thick.",
             "between the core and the bore",
             core,
         )

@@ -9,7 +9,8 @@ import math
 from collections.abc import Iterator
 
 from gearcam.base.findings import Remark
-from gearcam.base.numerals import formatted, shortened
+from gearcam.base.numerals import FEW, formatted, shortened
+from gearcam.base.readable import readable
 from gearcam.laws.program import Program
 from gearcam.spatial.extremes import Spot
 from gearcam.spatial.walls import RollerWall
@@ -28,7 +29,7 @@ def smaller_roller(wall: RollerWall) -> str:
     most = wall.allowed_radius
     radius = shortened(most, -1.0) if most > 0.0 else 0.0
     return (
-        f" A roller_radius_mm of up to {formatted(radius)} cuts nothing off."
+        f" A roller_radius_mm of up to {formatted(radius, FEW)} cuts nothing off."
         if radius > 0.0
         else ""
     )
@@ -38,7 +39,7 @@ def thin_rib(least: Spot, limit: float) -> Iterator[Remark]:
     """Yield the remark on a rib of the `least` thickness, mm, if this is below the `limit`, mm."""
     if least.value < limit:
         yield Remark(
-            f"The rib is about {formatted(least.value, 3)} mm thick where it is steep.",
+            f"The rib is about {readable(least.value, 'mm', digits=3)} thick where it is steep.",
             f"rib, {least.place}",
             least.value,
         )

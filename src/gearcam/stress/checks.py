@@ -12,6 +12,7 @@ from gearcam.base.display import ShortRepr
 from gearcam.base.findings import Remark, check
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import ARCSEC, NUMBER, Param
+from gearcam.base.readable import readable
 from gearcam.laws.ratio.span import angle_text
 from gearcam.meshing import force_checks as force_checks  # one check is of both studies
 from gearcam.meshing.drive_checks import rows_text
@@ -145,8 +146,9 @@ def root_stress(pair: StressedPair, limit: float) -> Iterator[Remark]:
             continue
         sure = one.safety / (1.0 + one.certificate.error)
         if sure < limit:
+            stress = readable(one.largest, "MPa", error=one.certificate.error * abs(one.largest))
             yield Remark(
-                f"The root of this tooth has a stress of {formatted(one.largest, 4)} MPa, within "
+                f"The root of this tooth has a stress of {stress}, within "
                 f"{formatted(100.0 * one.certificate.error, 2)} %, which is taken off the safety.",
                 one.where,
                 sure,

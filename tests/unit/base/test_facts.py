@@ -53,7 +53,7 @@ def test_values_are_found_by_their_names() -> None:
 @pytest.mark.parametrize(
     ("name", "told"),
     [
-        ("pair.module_mm", ("module", "2 mm", "at least 1.5", "wheel 1")),
+        ("pair.module_mm", ("module", "2 mm", "at least 1.5 mm", "wheel 1")),
         ("pair.teeth", ("teeth", "20 : 40", "", "")),
         ("ratio", ("ratio i21", "0.5 to 2", "", "")),
         ("contact_ratio", ("least contact ratio", "1.5, mean 1.75", "at most 3", "")),

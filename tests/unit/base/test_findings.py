@@ -106,7 +106,7 @@ def test_loss_below_its_limit_keeps_it_in_words_and_in_a_search(tmp_path):
     findings = gc.build(design).findings
     (loss,) = (one for one in findings if one.code == "undercut")
     assert loss.value < loss.limit
-    assert loss.limit_text == "at most 0.01 mm"
+    assert loss.limit_text == "at most 10 um"
     assert loss.as_dict()["relation"] == "at most"
     # two jumps without a limit count 1 each, the loss nothing
     assert measured(design, 0, {}).excess == pytest.approx(2.0, abs=1e-9)

@@ -141,7 +141,7 @@ def test_the_offset_roller_presses_on_its_return() -> None:
     assert found.severity == "warning"
     assert found.value == pytest.approx(31.810726, abs=5e-7)
     assert (found.limit, found.unit) == (pytest.approx(30.0), "deg")
-    assert "on the return reaches 31.8107 deg" in found.message
+    assert "on the return reaches 31.81 deg" in found.message
     place = float(found.where.removeprefix("return, at ").removesuffix(" deg"))
     exact = cam("roller, offset").motion(np.radians([place]))["pressure"]
     assert math.degrees(exact[0]) == pytest.approx(-31.810726, abs=1e-5)
@@ -246,10 +246,10 @@ def test_undercut_names_its_angles_and_its_loss() -> None:
     for one, ((a, b), (c, d), worst) in zip(
         found, ((exact.undercut, exact.rests, exact.worst), returning), strict=True
     ):
-        assert f"undercut from {a:.6g} deg to {b:.6g} deg." in one.message
-        assert f"rides from {c:.6g} deg to {d:.6g} deg" in one.message
+        assert f"undercut from {a:.5g} deg to {b:.5g} deg." in one.message
+        assert f"rides from {c:.5g} deg to {d:.5g} deg" in one.message
         assert f"up to {exact.loss:.4g} mm of lift is lost" in one.message
-        assert one.where == f"at {worst:.6g} deg"
+        assert one.where == f"at {worst:.5g} deg"
         assert one.value == pytest.approx(exact.loss, rel=1e-9)
         assert (one.limit, one.unit) == (0.01, "mm")
     allowed = findings(made, "undercut", lost_lift=exact.loss * (1 + 1e-9))
@@ -298,7 +298,7 @@ def test_undercut_over_the_end_of_the_turn_is_one_finding() -> None:
     assert len(found) == 2
     (_, first_end), (start, end) = turned.undercut_ranges
     assert first_end < start < 2.0 * math.pi < end
-    assert any(f"to {math.degrees(end):.6g} deg" in one.message for one in found)
+    assert any(f"to {math.degrees(end):.5g} deg" in one.message for one in found)
     assert sorted(one.value or 0.0 for one in found) == pytest.approx(
         sorted(loss.value for loss in made.lost), rel=1e-9
     )
@@ -310,7 +310,7 @@ def test_undercut_within_its_limit_is_a_warning() -> None:
     found = findings(made, "undercut")
     assert [one.severity for one in found] == ["warning", "warning"]
     for one, (start, _) in zip(found, made.undercut, strict=True):
-        assert f"{math.degrees(start):.6g} deg" in one.message
+        assert f"{math.degrees(start):.5g} deg" in one.message
         assert 0.0 < (one.value or 0.0) < 1e-5
     larger = cam("flat", "cycloidal", 10.0, STEEP, base_radius=barely(-1e-8))
     assert findings(larger, "undercut") == []

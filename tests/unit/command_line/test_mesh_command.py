@@ -111,7 +111,7 @@ def test_a_close_mounting_ends_with_an_error(design: str) -> None:
     ("options", "words"),
     [
         (["--steps", "0"], "meshing.steps"),
-        (["--overclosure", "0"], "without an overclosure"),
+        (["--overclosure", "0"], "no flanks overlap"),
         (["--overclosure", "nan"], "meshing.overclosure_deg"),
         (["--from", "40"], "before it begins"),
         (["--teeth", "21"], "21: the driver has no such tooth"),

@@ -126,6 +126,6 @@ def test_backlash_says_how_much_of_it_clearance_makes() -> None:
     more = 2 * (0.07 + 0.03) / math.cos(math.radians(20))
     assert made.facts["mesh.backlash_mm"] == pytest.approx(0.1 + more, abs=1e-12)
     told = made.facts.quantity("mesh.backlash_mm")
-    assert told.text == f"{0.1 + more:.6g} mm"
-    assert told.place == f"backlash_mm 0.1 + {more:.6g} from clearance_mm"
+    assert told.text == f"{0.1 + more:.4f} mm"
+    assert told.place == f"backlash_mm 0.1 + {more:.5g} from clearance_mm"
     assert plain.facts.quantity("mesh.backlash_mm").place == ""

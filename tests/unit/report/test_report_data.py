@@ -13,6 +13,7 @@ import pytest
 
 import gearcam
 from arch import rules
+from gearcam.base.readable import readable
 from gearcam.numeric.pose import Pose
 from gearcam.pictures.charts import Chart, Limit, Line, MarkedPlace
 from gearcam.pictures.drawings import CENTRODE, OUTLINE, Feature, Path
@@ -124,7 +125,7 @@ def test_forces_are_shares_of_the_largest():
         ("B", 0.3, 0.4), ("C", None, None), ("D", 0.0, -1.0)
     ]  # fmt: skip
     assert (data["forces"][0]["x"][0], data["forces"][0]["y"][0]) == (1.0, 2.0)
-    assert data["largest_force"] == "10"
+    assert data["largest_force"] == "10 N"
     with pytest.raises(ValueError, match="B: needs a force for each place"):
         replace(scene, forces=(replace(arrows[0], force=np.zeros(3, dtype=complex)),))
     assert read(scene_data(scene))["largest_force"] is None
@@ -151,6 +152,7 @@ def test_curves_of_one_quantity_share_a_scale():
     assert second["values"][label] == [None, 400.0, None]
     assert (first["body"], first["points"][:4]) == ("a", [1.0, 0.0, 2.0, 1.0])
     scale = {"least": 33.333, "largest": 400.0, "place": 5.0, "body": "b", "x": 2.0, "y": 11.0}
+    scale["told"] = ["33.3", "400.0 MPa"]
     assert data["scales"] == {label: scale}
 
 
@@ -193,6 +195,7 @@ def test_every_chart_of_a_result_is_json(name):
         data = read(chart_data(one, chart, scene.driver))
         for told, line in zip(data["lines"], chart.lines, strict=True):
             y = np.array([math.nan if value is None else value for value in told["y"]])
+            y /= data["factor"]
             assert np.isnan(y).tolist() == (~np.isfinite(line.y)).tolist()
             largest = np.nanmax(np.abs(line.y), initial=0.0)
             assert np.nanmax(np.abs(y - line.y), initial=0.0) <= 1e-5 * largest
@@ -218,7 +221,7 @@ def test_accuracy_is_one_number_for_each_thing_that_people_act_on(name, labels):
     rows = dict(re.findall(r'<th scope="row">(.+?)</th><td class="number">(.+?)</td>', html))
     assert list(rows) == labels
     chord = result.facts["accuracy.chord_mm"]
-    assert rows[OUTLINES[0]] == f"{chord:.2g} mm"
+    assert rows[OUTLINES[0]] == readable(chord, "mm", digits=2)
 
 
 def test_of_several_walls_the_largest_error_is_shown():
@@ -226,7 +229,7 @@ def test_of_several_walls_the_largest_error_is_shown():
     result = gearcam.build(result.design.with_({"blank.density_kg_m3": 7850}))
     areas = [result.facts[f"accuracy.{wall}_area_mm2"] for wall in ("inner", "outer")]
     html = blocks(result)["accuracy"]
-    assert f'>area</th><td class="number">{max(areas):.2g} mm2<' in html
+    assert f'>area</th><td class="number">{readable(max(areas), "mm2", digits=2)}<' in html
 
 
 def test_solids_that_move_in_space_are_told() -> None:

@@ -255,5 +255,7 @@ def test_the_page_shows_the_charts_and_the_printed_table(
     for chart in json.loads(data)["charts"]:
         of = rows.filter(pl.col("stage") == chart["title"])
         line = chart["lines"][0]
-        assert line["x"] == pytest.approx(of["time_s"].to_list(), rel=1e-5)
-        assert line["y"] == pytest.approx(of["error"].to_list(), rel=1e-5)
+        times = {"s": 1.0, "ms": 1e3, "us": 1e6}[chart["x"].rpartition(", ")[2]]
+        assert line["x"] == pytest.approx([times * t for t in of["time_s"]], rel=1e-5)
+        errors = [chart["factor"] * one for one in of["error"].to_list()]
+        assert line["y"] == pytest.approx(errors, rel=1e-5)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearcam.base.findings import limit_of
-from gearcam.base.numerals import formatted
+from gearcam.base.numerals import FEW, formatted
 from gearcam.cams.checks import KIND, pressure_limits
 from gearcam.cams.wall import PitchMotion, Wall
 from gearcam.kinds.cam.result import pressure_column, rho_column
@@ -115,7 +115,8 @@ def _radii(result: CamResult) -> dict[str, str]:
         for one in result.cam.motions
     }
     walls = {
-        f"{one.called} before trimming": rho_column("profile", one) for one in result.cam.walls
+        f"{one.called} before trimming" if one.undercut else one.called: rho_column("profile", one)
+        for one in result.cam.walls
     }
     return pitches | walls
 
@@ -133,7 +134,7 @@ def _curvature(result: CamResult) -> Chart:
     tool = limit_of(PARTS_KIND, "tool-too-large", result.design.limits)
     limits = []
     if tool and any(math.isfinite(wall.profile_radius[1]) for wall in result.cam.walls):
-        label = f"concave limit for a tool of {formatted(tool)} mm"
+        label = f"concave limit for a tool of {formatted(tool, FEW)} mm"
         limits.append(Limit(label=label, value=-2.0 / tool))
     rollers = {one.side / one.follower.radius: one for one in result.cam.walls if radius}
     for value, wall in rollers.items():

@@ -12,6 +12,7 @@ import numpy as np
 from gearcam.base.facts import Fact, Tree
 from gearcam.base.findings import limit_of, run_checks
 from gearcam.base.numerals import formatted
+from gearcam.base.readable import number
 from gearcam.dynamics.follower_checks import MOVING, MovingFollower
 from gearcam.dynamics.periodic import Periodic
 from gearcam.dynamics.residual import residual
@@ -196,7 +197,7 @@ def _elastic_facts(moment: Moment) -> Tree:
         "natural_frequency_hz": Fact(
             hertz,
             "natural frequencies",
-            text=" and ".join(map(formatted, hertz)) + " Hz",
+            text=" and ".join(number(one, "Hz") for one in hertz) + " Hz",
             shown=True,
         ),
         f"contact_stiffness_{bend}": None

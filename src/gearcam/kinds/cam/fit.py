@@ -15,7 +15,7 @@ import numpy as np
 from gearcam.base.errors import DesignError, Problem
 from gearcam.base.facts import Fact
 from gearcam.base.findings import Finding, run_checks
-from gearcam.base.numerals import formatted
+from gearcam.base.numerals import FEW, formatted
 from gearcam.cams.checks import FittedMotion
 from gearcam.cams.spec import FITTED
 from gearcam.designs.writing import least_document, toml_text
@@ -239,7 +239,7 @@ class FittedDesign:
             "type": word,
             "law": Fact(
                 MOTION_LAWS.name_of(law),
-                f"{word}, {formatted(start)} to {formatted(end)} deg",
+                f"{word}, {formatted(start, FEW)} to {formatted(end, FEW)} deg",
                 shown=True,
                 text=law_text(law) + (" (or " + ", ".join(others) + ")" if others else ""),
             ),
@@ -270,7 +270,7 @@ class FittedDesign:
         yield f"fitted to {self.source}"
         yield f"residual {rms} {unit} (rms), {most} {unit} at most; noise {noise} {unit}"
         if facts["begins_deg"]:
-            begins = formatted(facts["begins_deg"])
+            begins = formatted(facts["begins_deg"], FEW)
             yield f"its cam angle 0 is at {begins} deg of what was measured"
         for phase in facts["phases"]:
             if phase["alike"]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from gearcam.base.errors import DesignError, InfeasibleError, MissingExtraError, Problem
 from gearcam.base.findings import limit_of
-from gearcam.base.numerals import formatted
+from gearcam.base.numerals import FEW, formatted
 from gearcam.cams.spec import POINTED
 from gearcam.dynamics.follower import ElasticFollower, damping_of
 from gearcam.dynamics.follower_checks import MOVING
@@ -183,7 +183,7 @@ class MovingCam:
         if math.isinf(found):
             spring = next(k for k, one in enumerate(loads.springs) if one.solved)
             told = "no stiffness softer than the train keeps the elastic follower on the cam, with "
-            told += f"{formatted(share)} of the mean contact force at least"
+            told += f"{formatted(share, FEW)} of the mean contact force at least"
             raise InfeasibleError(told, where=f"spring[{spring}]", nearest="more preload")
         return {what: max(0.0, found)}
 

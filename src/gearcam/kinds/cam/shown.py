@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Final
 
 from gearcam.base.facts import Fact, Facts, Tree, extent
-from gearcam.base.numerals import formatted
+from gearcam.base.numerals import FEW, formatted
 from gearcam.designs.outputs import MESHES
 from gearcam.kinds.cam.wall_facts import pressure
 from gearcam.kinds.shared import peak_of
@@ -93,7 +93,7 @@ def _deviation(program: Program, scale: float, unit: str) -> Fact | None:
     """Return the largest distance of a smoothed lift from the rows of its table."""
     if program.deviation is None:
         return None
-    place = f"at {formatted(math.degrees(program.deviation.theta), scale=360.0)} deg"
+    place = f"at {formatted(math.degrees(program.deviation.theta), FEW, scale=360.0)} deg"
     value, meaning = scale * program.deviation.value, "largest distance from the given points"
     return Fact(value, meaning, place=place, unit=unit, shown=True)
 

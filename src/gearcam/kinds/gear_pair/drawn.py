@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final, get_args
 import numpy as np
 
 from gearcam.base.findings import limit_of
-from gearcam.base.numerals import formatted
+from gearcam.base.numerals import FEW, formatted
 from gearcam.gears.checks import undercut_curvatures
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs
 from gearcam.gears.pair import Gear
@@ -188,7 +188,7 @@ def _contact_patch(result: GearPairResult) -> Chart:
     total = np.bincount(phase, area * table["pairs"]) / np.bincount(phase)
     together = Line(label="all pairs of teeth", x=x, y=total)
     return Chart(
-        title=f"Contact patches, driver advanced by {formatted(math.degrees(ahead))} deg",
+        title=f"Contact patches, driver advanced by {formatted(math.degrees(ahead), FEW)} deg",
         x=DRIVER,
         y="area of overlap, mm2",
         lines=(_by_pair(result, table, area, "each pair of teeth"), together),

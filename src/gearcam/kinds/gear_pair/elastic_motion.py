@@ -14,6 +14,7 @@ from gearcam.base.facts import Fact, Tree, extent
 from gearcam.base.findings import Finding, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import ARCSEC, RPM
+from gearcam.base.readable import readable
 from gearcam.dynamics.checks import VibratingTeeth
 from gearcam.dynamics.machine import TURN, least_and_largest
 from gearcam.dynamics.mesh_stiffness import Smooth, backlash_angle, mesh_stiffness
@@ -384,7 +385,7 @@ class ElasticRun(PairRun):
             "stiffness_nm_rad": Fact(
                 extent(float(stiffness.min()), float(stiffness.max())),
                 f"stiffness of the mesh, {source}",
-                place=f"under {formatted(self._nominal, 4)} N m, mean {formatted(mean, 4)}{jumps}",
+                place=f"under {readable(self._nominal, 'N m')}, mean {formatted(mean, 4)}{jumps}",
                 unit="N m/rad",
                 shown=True,
             ),
@@ -400,6 +401,7 @@ class ElasticRun(PairRun):
                 place="from the middle of the backlash",
                 unit="arcsec",
                 shown=True,
+                error=lag / ARCSEC.factor,
             ),
             "damping_ratio": self._settings.damping_ratio,
             "method": self._settings.method,

@@ -249,6 +249,7 @@ def _facts(found: Running, gears: Any, how: str) -> Tree:
             unit=found.unit,
             place=place,
             shown=True,
+            error=found.known_to,
         )
         parts = of_error(found, gears)
         if isinstance(parts, str):

@@ -11,7 +11,7 @@ import numpy as np
 from gearcam.base.errors import DesignError, Problem
 from gearcam.base.facts import Fact, Tree
 from gearcam.base.findings import limit_of, run_checks
-from gearcam.base.numerals import formatted
+from gearcam.base.numerals import FEW, formatted
 from gearcam.base.quantities import TORQUE
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.kinds.gear_pair.drawn import DRIVER
@@ -263,10 +263,10 @@ def _demand_fit(
         short = word == "at" and values and values[-1] < travel * (1.0 - _ROUNDING)
         if not short and all(one <= travel * (1.0 + _ROUNDING) for one in values):
             continue
-        what = f"{formatted(math.degrees(values[-1]))}: " + (
+        what = f"{formatted(math.degrees(values[-1]), FEW)}: " + (
             f"the table ends inside {words}" if short else f"it lies beyond {words}"
         )
-        end = f"{formatted(math.degrees(travel))} deg"
+        end = f"{formatted(math.degrees(travel), FEW)} deg"
         allowed = f"{end} or more as the last" if short and not whole else f"up to {end}"
         named = "file" if word == "at" and load.file is not None else f"{word}_deg"
         key = f"load[{number}].{named}"

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.base.findings import Finding, in_order, run_checks
-from gearcam.base.numerals import formatted
+from gearcam.base.numerals import FEW, formatted
 from gearcam.gears import checks  # noqa: F401  (its checks register themselves)
 from gearcam.gears.subject import KIND
 from gearcam.kinds.gear_pair.made import WHOLE, MadePair
@@ -131,7 +131,7 @@ class GearPairResult(MadePair):
 
         design, pose = self.design, self.design.output.pose
         rows = {"law": design.law_type, **sheet_rows(self.facts, PAIR_ROWS)}
-        rows["drawn at phi1"] = f"{formatted(math.degrees(pose))} deg"
+        rows["drawn at phi1"] = f"{formatted(math.degrees(pose), FEW)} deg"
         radius = float(abs(self.pair.rolling.tracks[0].frames(np.array([pose])).p[0]))
         pair = pair_sheet(self.drawing, self.pair.shift, rows, design.name, pitch_radius=radius)
         return *super().sheets, pair

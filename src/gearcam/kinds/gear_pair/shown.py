@@ -10,7 +10,7 @@ import numpy as np
 
 from gearcam.base.facts import Fact, Facts, Tree, extent
 from gearcam.base.findings import limit_of
-from gearcam.base.numerals import formatted
+from gearcam.base.numerals import FEW, formatted
 from gearcam.base.quantities import RPM
 from gearcam.designs.outputs import MESHES
 from gearcam.gears.pair import gear_tree
@@ -124,7 +124,7 @@ def _rack(result: GearPairResult) -> Tree:
 
     def height(name: str) -> Fact:
         gave = name in yielded
-        place = f"changed from the default {formatted(yielded[name])}" if gave else ""
+        place = f"changed from the default {formatted(yielded[name], FEW)}" if gave else ""
         return Fact(getattr(rack, name), place=place, unit="modules", shown=gave)
 
     return {
@@ -187,7 +187,7 @@ def _parted(result: GearPairResult) -> str:
         return ""
     backlash = result.design.pair.backlash
     more = result.subject.backlash - backlash
-    return f"backlash_mm {formatted(backlash)} + {formatted(more)} from clearance_mm"
+    return f"backlash_mm {formatted(backlash, FEW)} + {formatted(more, FEW)} from clearance_mm"
 
 
 def _contact_ratios(sides: tuple[FlankPairs, ...], limit: float) -> Iterator[tuple[str, Fact]]:
@@ -241,7 +241,10 @@ _SOLVED: Mapping[str, tuple[str, str]] = {
     "center_distance_mm": ("centre distance", "mm"),
     "module_mm": ("module", "mm"),
     "center_distance_over_scale": ("centre distance in the unit of r1", ""),
-    "center_distance_over_semi_latus_rectum": ("centre distance over semi-latus rectum", ""),
+    "center_distance_over_semi_latus_rectum": (
+        "centre distance over radius at focus",
+        "",
+    ),
     "side_distance_over_center_distance": ("distance of a side over centre distance", ""),
     "mm_per_unit_of_r1": ("unit of r1", "mm"),
     "growth_per_rad": ("growth of the spiral", "1/rad"),

@@ -11,7 +11,7 @@ import numpy as np
 from gearcam.base.errors import DesignError, InfeasibleError, MissingExtraError, Problem
 from gearcam.base.facts import Fact, Tree, extent
 from gearcam.base.findings import limit_of, run_checks
-from gearcam.base.numerals import formatted
+from gearcam.base.numerals import FEW, formatted
 from gearcam.base.quantities import ARCSEC
 from gearcam.export.table import table_bytes
 from gearcam.gears.track import WHEELS
@@ -202,7 +202,7 @@ def _at(pair: ElasticPair, entries: Entries, phi1: float) -> Entries:
     except InfeasibleError as error:
         near = float(entries.phi1[np.abs(entries.phi1 - phi1).argmin()])
         what, key = f"no teeth carry at {angle_text(phi1)}", "stress.phi1_deg"
-        nearest = f"they do at {formatted(math.degrees(near))} deg"
+        nearest = f"they do at {formatted(math.degrees(near), FEW)} deg"
         raise InfeasibleError(what, where=key, nearest=nearest) from error
 
 
@@ -264,7 +264,7 @@ def _pictures(pair: ElasticPair, certified: list[CertifiedRoot]) -> dict[str, by
     for one in certified:
         field = stress_field(one.certificate, pair.result.pair.module)
         place = f"wheel {one.wheel}, tooth {one.tooth}, {angle_text(one.phi1)}"
-        under = f"{formatted(one.force, 6)} N on {formatted(pair.width, 4)} mm"
+        under = f"{formatted(one.force, FEW)} N on {formatted(pair.width, 4)} mm"
         lines = (
             f"{pair.result.design.name}: {place}",
             f"{under}; bands: stress along the edge, red tension, blue compression",
@@ -337,8 +337,8 @@ def _facts(pair: ElasticPair, entries: Entries, stressed: StressedPair, *, compl
 def elasticity(pair: ElasticPair) -> Tree:
     """Return as facts what the wheels are made of, and on what they are held."""
     (first, one), (second, other) = pair.result.design.material.elasticity
-    material = f"E {formatted(first)} and {formatted(second)} MPa, "
-    material += f"nu {formatted(one)} and {formatted(other)}, plane {pair.spec.plane}"
+    material = f"E {formatted(first, FEW)} and {formatted(second, FEW)} MPa, "
+    material += f"nu {formatted(one, FEW)} and {formatted(other, FEW)}, plane {pair.spec.plane}"
     return {
         "held": Fact(_held_on(pair), "wheels are held on", shown=True),
         "material": Fact(material, "elasticity of the wheels", shown=True),
@@ -366,7 +366,7 @@ def _held_on(pair: ElasticPair) -> str:
     words = ["the bore", "the bore" if len(_on_shafts(pair)) == 2 else inside]
     for number, diameter in enumerate(map(_held, pair.regions)):
         if diameter is not None:
-            words[number] = f"a circle of {formatted(diameter)} mm"
+            words[number] = f"a circle of {formatted(diameter, FEW)} mm"
     return " and ".join(words)
 
 
@@ -388,17 +388,18 @@ def _of_wheel(pair: ElasticPair, entries: Entries, stressed: StressedPair, wheel
 
 def _of_root(one: CertifiedRoot, least: float) -> Tree:
     """Return the facts of a certified stress."""
-    made = one.certificate
+    made, mpa = one.certificate, {"unit": "MPa", "shown": True}
+    share, tension, pressed = made.error, made.tension.stress, made.compression.stress
     error = f"within {formatted(100.0 * made.error, 2)} %, {angle_text(one.phi1)}"
     name = f"root of wheel {one.wheel}, tooth {one.tooth}"
     return {
         "tension_mpa": Fact(
-            made.tension.stress, f"tension at the {name}", place=error, unit="MPa", shown=True
+            tension, f"tension at the {name}", place=error, error=share * abs(tension), **mpa
         ),
         "compression_mpa": Fact(
-            made.compression.stress, f"compression at the {name}", unit="MPa", shown=True
+            pressed, f"compression at the {name}", error=share * abs(pressed), **mpa
         ),
-        "von_mises_mpa": made.von_mises,
+        "von_mises_mpa": Fact(made.von_mises, error=share * made.von_mises),
         "error": made.error,
         "tooth": one.tooth,
         "tension_at_mm": [made.tension.point.real, made.tension.point.imag],

@@ -50,7 +50,7 @@ _NOISE: Final = 1e-9
 
 _STUDIED: Final = {
     "center_distance_mm": "centre distance as mounted",
-    "overclosure_deg": "overclosure of the driver",
+    "overclosure_deg": "driver turned ahead by",
     "contact_ratio": "contact ratio",
     "pairs_in_contact": "pairs in contact",
     "interference_steps": "phases with interference",
@@ -125,7 +125,11 @@ def _facts(numbers: Mapping[str, Any]) -> Tree:
     if error is not None:
         unit, least = error["unit"], error["known_to"]
         peak = Fact(
-            error["peak_to_peak"], "transmission error, peak to peak", unit=unit, shown=True
+            error["peak_to_peak"],
+            "transmission error, peak to peak",
+            unit=unit,
+            shown=True,
+            error=least,
         )
         if not peak.value:
             peak = replace(peak, place=f"known to {formatted(least, 1)} {unit}")
@@ -137,7 +141,7 @@ def _facts(numbers: Mapping[str, Any]) -> Tree:
         elif error["harmonics"]:
             largest = max(error["harmonics"], key=lambda one: one["amplitude"])
             words = f"largest harmonic, {largest['order']} per turn"
-            harmonic = Fact(largest["amplitude"], words, unit=unit, shown=True)
+            harmonic = Fact(largest["amplitude"], words, unit=unit, shown=True, error=least)
             tree["transmission_error"]["largest_harmonic"] = harmonic
     return tree
 

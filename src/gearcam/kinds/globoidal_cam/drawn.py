@@ -51,7 +51,7 @@ def _pressure(result: GloboidalCamResult) -> Chart:
 
 def _spread(result: GloboidalCamResult) -> Chart:
     places = {"end of the roller": result.cam.reach, "top of the rib": result.cam.top}
-    title = "Spread of the walls at the roller nearest to the middle: undercut below 0"
+    title = "Margin of the walls against undercut at the roller nearest to the middle"
     return spread_chart(result, title, places)
 
 

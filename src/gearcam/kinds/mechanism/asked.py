@@ -302,7 +302,7 @@ def no_dwell(result: Any, limit: float) -> Iterator[Remark]:  # noqa: ARG001
         if found.length < one.least:
             yield Remark(
                 f"{one.on} has no dwell as long as that: this is the longest.",
-                f"dwell[{number}], from {formatted(DEG * found.begin, 6)} deg",
+                f"dwell[{number}], from {formatted(DEG * found.begin)} deg",
                 DEG * found.length,
                 limit=DEG * one.least,
             )
@@ -326,9 +326,9 @@ def second_center(result: Any, limit: float) -> Iterator[Remark]:  # noqa: ARG00
             if center.outer == outer and math.isclose(center.value, top, rel_tol=1e-9)
         ]
         if len(same) > 1:
-            places = ", ".join(f"{formatted(DEG * place, 6)} deg" for place in same)
+            places = ", ".join(f"{formatted(DEG * place)} deg" for place in same)
             yield Remark(
                 f"{asked.on} reaches this dead centre more than once in a cycle, at {places}: the "
                 "interval is before the first of them.",
-                f"interval[{number}], to {formatted(DEG * interval.end, 6)} deg",
+                f"interval[{number}], to {formatted(DEG * interval.end)} deg",
             )

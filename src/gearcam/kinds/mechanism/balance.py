@@ -11,7 +11,7 @@ import numpy as np
 
 from gearcam.base.errors import DesignError, Problem
 from gearcam.base.facts import Fact, Tree
-from gearcam.base.numerals import formatted
+from gearcam.base.readable import readable
 from gearcam.kinds.mechanism.asked import DEG
 from gearcam.kinds.mechanism.loaded import work_of
 from gearcam.kinds.mechanism.rotors import hinges_on_frame, rotor_facts, rotors_of, weight_facts
@@ -241,9 +241,8 @@ def _facts(
     force = np.where(np.abs(left.force) > none, left.force, 0.0)
     tree["balanced_n"] = _largest(result, q, force, "shaking force left with them", "N")
     if result.design.balance.radius is not None:
-        label = (
-            f"shaking moment with them, as points at {formatted(result.design.balance.radius)} mm"
-        )
+        radius = readable(result.design.balance.radius, "mm")
+        label = f"shaking moment with them, as points at {radius}"
         tree["balanced_moment_nm"] = _largest(result, q, _NM * left.moment, label, "N m")
     return tree
 

@@ -25,7 +25,7 @@ _MOST: Final = 9
 _STEADY: Final = 1e-9
 """Range of a pressure angle that does not change, rad."""
 
-_WORDS: Final = ("place", *RATES)
+_WORDS: Final = ("position", *RATES)
 
 
 def _marks(result: MechanismResult) -> tuple[MarkedPlace, ...]:
@@ -70,7 +70,7 @@ def _unit(angle: bool, order: int, *, timed: bool) -> str:
     """Return the unit of a derivative by time, or by the master's angle."""
     if not order:
         return "deg" if angle else "mm"
-    power = "" if order == 1 else f"^{order}"
+    power = "" if order == 1 else str(order)
     return f"{'rad' if angle else 'mm'}/{'s' if timed else 'rad'}{power}"
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from gearcam.base.errors import DesignError, InfeasibleError, Problem
 from gearcam.base.facts import Fact, Tree, extent
 from gearcam.base.findings import in_order, run_checks
-from gearcam.base.numerals import formatted
+from gearcam.base.numerals import FEW, formatted
 from gearcam.kinds.mechanism.asked import DEG
 from gearcam.kinds.mechanism.force_checks import CHECKS, JointedMachine
 from gearcam.kinds.mechanism.keys import center_of, way_of
@@ -178,7 +178,7 @@ class JointForces:
         """Return in words where a `mask` holds, (n,), of rising angles `q`, (n,), rad."""
         if mask.all():
             return "everywhere"
-        ends = [[formatted(DEG * float(q[k])) for k in one] for one in runs_of(mask)]
+        ends = [[formatted(DEG * float(q[k]), FEW) for k in one] for one in runs_of(mask)]
         words = [low if low == high else f"{low} to {high}" for low, high in ends[:3]]
         more = f" and {len(ends) - 3} more" if len(ends) > 3 else ""
         return f"{self.result.driver[0]} = {', '.join(words)} deg{more}"

@@ -182,7 +182,7 @@ def _demand_inside(drives: Sequence[PlacedDrive], part: tuple[float, float]) -> 
         own = sorted(drive.own(np.array(part)))
         ends = float(drive.knots[0]), float(drive.knots[-1])
         if own[0] < ends[0] - _WHOLE or own[1] > ends[1] + _WHOLE:
-            goes, allowed = ([formatted(math.degrees(q), 6) for q in two] for two in (own, ends))
+            goes, allowed = ([formatted(math.degrees(q)) for q in two] for two in (own, ends))
             raise InfeasibleError(
                 f"{drive.spec.name} would turn from {goes[0]} to {goes[1]} deg, beyond its ends",
                 where=f"drive[{number}]",
@@ -226,7 +226,7 @@ def _demand_smooth(drives: Sequence[PlacedDrive]) -> None:
         bad = ~np.all([np.isfinite(one + 0.0 * q) for one in found], axis=0)
         bad |= np.abs(found[0] + 0.0 * q) > LONGEST
         if bad.any():
-            at = formatted(math.degrees(q[bad][0]), 6)
+            at = formatted(math.degrees(q[bad][0]))
             raise InfeasibleError(
                 f"the place or its derivatives are not finite at {at} deg",
                 where=f"drive[{number}].slide",
@@ -250,7 +250,7 @@ def _demand_on_plates(drives: Sequence[PlacedDrive], part: tuple[float, float]) 
         beyond = np.maximum(-places, places - drive.period)
         worst = int(beyond.argmax())
         if beyond[worst] > ROUNDING * drive.period:
-            at, angle = formatted(places[worst], 6), formatted(math.degrees(q[worst]), 6)
+            at, angle = formatted(places[worst]), formatted(math.degrees(q[worst]))
             raise InfeasibleError(
                 f"the plate would be at {at} mm at {angle} deg, beyond its travel",
                 where=f"drive[{number}].slide",

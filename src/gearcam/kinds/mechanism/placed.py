@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.base.numerals import formatted
+from gearcam.base.numerals import FEW, formatted
 from gearcam.base.tolerances import DEFAULT
 from gearcam.kinds.mechanism.keys import center_of, way_of
 from gearcam.kinds.mechanism.moved import Moved, linear, moved_by
@@ -74,7 +74,7 @@ def _formula_cells(text: str, low: float, high: float) -> Array:
         name="the place",
         low=low,
         high=high,
-        place=lambda q: f"{formatted(math.degrees(q), 6)} deg",
+        place=lambda q: f"{formatted(math.degrees(q), FEW)} deg",
         variable="q",
     )
     function = AxisFunction(axis, parse(text, "q").evaluate, DEFAULT.expansion)

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from gearcam.base.errors import ABOVE, DesignError, InfeasibleError, beyond_limit
 from gearcam.base.findings import Finding, in_order, run_checks
-from gearcam.base.numerals import formatted, in_range
+from gearcam.base.numerals import FEW, formatted, in_range
 from gearcam.kinds.mechanism.asked import DEG, RATES, TABLES, Amount, Output
 from gearcam.kinds.mechanism.design import MechanismDesign
 from gearcam.kinds.mechanism.linkage import make_linkage
@@ -166,7 +166,7 @@ class MechanismResult(Result):
         """Return an angle of the master, rad, in degrees as text: a turn's end is its begin."""
         low, high = (DEG * end for end in self.linkage.span)
         place = DEG * q
-        return in_range(place, low, high) if self.linkage.closed else formatted(place)
+        return in_range(place, low, high) if self.linkage.closed else formatted(place, FEW)
 
     def place(self, q: float) -> str:
         """Return an angle of the master, rad, with its name, as ``theta = 90 deg``."""

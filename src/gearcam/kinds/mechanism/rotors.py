@@ -10,7 +10,7 @@ import numpy as np
 
 from gearcam.base.errors import DesignError, Problem
 from gearcam.base.facts import Fact, Tree
-from gearcam.base.numerals import formatted
+from gearcam.base.numerals import FEW, formatted
 from gearcam.kinds.mechanism.loaded import BODY, HeavyBody, heavy_bodies
 from gearcam.linkages.balance import MILLI, two_planes
 from gearcam.linkages.bonds import Hinge
@@ -210,7 +210,7 @@ def rotor_facts(rotor: Rotor, speed: float) -> Tree:
     }
     carried = two_planes(rotor.unbalance, rotor.lever, spec.planes)
     for place, one in zip(spec.planes, carried, strict=True):
-        weight, label = _rounded(-one, rotor.none), f"{name}: weight at {formatted(place)} mm"
+        weight, label = _rounded(-one, rotor.none), f"{name}: weight at {formatted(place, FEW)} mm"
         own = weight_facts(weight, spec.radius, label, frame, f"{label}, its mass", "the axis")
         force = MILLI * speed**2 * rotor.bend * abs(weight)
         own["force_n"] = Fact(force, f"{label}, its largest force", unit="N", shown=True)
@@ -229,7 +229,7 @@ def _degrees(vector: complex) -> float:
 
 
 def _vector(vector: complex, label: str, frame: str, unit: str) -> Fact:
-    place = f"at {formatted(_degrees(vector))} deg {frame}"
+    place = f"at {formatted(_degrees(vector), FEW)} deg {frame}"
     return Fact(abs(vector), label, place=place, unit=unit, shown=True)
 
 
@@ -254,7 +254,7 @@ def weight_facts(
         "mass_kg": radius
         and Fact(
             abs(weight) / radius,
-            f"{mass} at {formatted(radius)} mm from {center}",
+            f"{mass} at {formatted(radius, FEW)} mm from {center}",
             unit="kg",
             shown=True,
         ),

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.facts import Fact, Facts, extent
-from gearcam.base.numerals import formatted
+from gearcam.base.numerals import FEW, formatted
 from gearcam.kinds.mechanism.asked import DEG, RATES
 from gearcam.kinds.mechanism.names import tables_of, told_parts
 from gearcam.linkages.measures import STILL
@@ -27,6 +27,12 @@ if TYPE_CHECKING:
 Tree = dict[str, Any]
 
 Files = dict[str, bytes]
+
+_DRIVES: Final = {
+    "even": ("an even shaft", "even shafts"),
+    "pair": ("a gear pair", "gear pairs"),
+}
+"""What drives are called, one and several."""
 
 _DIGITS: Final = 10
 """Decimals of a place in degrees above rounding."""
@@ -61,9 +67,9 @@ def _called(result: MechanismResult) -> str:
     groups = " + ".join(name for name in parts if name) or "linkage"
     drives = []
     for key, number in Counter(one.key for one in result.design.drive).items():
-        one, several = {"even": ("an even shaft", "even shafts")}.get(key, (f"a {key}", f"{key}s"))
+        one, several = _DRIVES.get(key, (f"a {key}", f"{key}s"))
         drives.append(one if number == 1 else f"{number} {several}")
-    return f"{groups} behind {' and '.join(drives)}"
+    return f"{groups} driven by {' and '.join(drives)}"
 
 
 def _machine(result: MechanismResult) -> Tree:
@@ -195,7 +201,7 @@ def _fitted(path: PointPath, one: StretchSpec, fit: LineFit | CircleFit) -> Tree
 
 
 def _between(begin: float, end: float) -> str:
-    return f"{formatted(DEG * begin, 6)} to {formatted(DEG * end, 6)} deg"
+    return f"{formatted(DEG * begin, FEW)} to {formatted(DEG * end, FEW)} deg"
 
 
 def _intervals(result: MechanismResult) -> list[Tree] | None:
@@ -293,7 +299,7 @@ def _svg(result: MechanismResult, _: Any) -> Files:
     from gearcam.kinds.mechanism.drawn import legend, picture, shown_at
 
     drawing, labels = picture(result)
-    place = f"{result.driver[0]} = {formatted(math.degrees(shown_at(result)))} deg"
+    place = f"{result.driver[0]} = {formatted(math.degrees(shown_at(result)), FEW)} deg"
     notes = (*result.facts.headline, f"drawn at {place}")
     data = svg_bytes(
         drawing, title=result.design.name, notes=notes, labels=labels, legend=legend(result)

@@ -18,6 +18,7 @@ from gearcam.base.findings import Remark, check, limit_of, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import TORQUE as NEWTON_METRES
 from gearcam.base.quantities import Param
+from gearcam.base.readable import readable
 from gearcam.kinds.mechanism.asked import DEG
 from gearcam.kinds.mechanism.loaded import BODY, work_of
 from gearcam.kinds.mechanism.names import acting, several, tables_of
@@ -204,8 +205,8 @@ def drive_torque(effort: DriverEffort, limit: float) -> Iterator[Remark]:
         if other < _LESS * effort.peak:
             times = formatted(effort.peak / other, 3) if other > 0.0 else "many"
             message = (
-                f"The driver exerts up to {formatted(effort.peak, 5)} N m, {times} times the "
-                f"{formatted(other, 5)} N m of the same mechanism behind {name!r}."
+                f"The driver exerts up to {readable(effort.peak, 'N m')}, {times} times the "
+                f"{readable(other, 'N m')} of the same mechanism behind {name!r}."
                 f"{effort.gain}"
             )
             yield Remark(message, effort.place, effort.peak, limit=math.inf)

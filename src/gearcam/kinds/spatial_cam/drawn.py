@@ -46,7 +46,7 @@ def _pressure(result: SpatialCamResult) -> Chart:
 
 def _spread(result: SpatialCamResult) -> Chart:
     places = {"floor": result.cam.floor, "outside": result.cam.outer_radius}
-    return spread_chart(result, "Spread of the walls: undercut below 0", places)
+    return spread_chart(result, "Margin of the walls against undercut", places)
 
 
 _MOTION: Final[Charts] = {

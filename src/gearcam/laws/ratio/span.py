@@ -17,7 +17,7 @@ import numpy as np
 
 from gearcam.base.adjustments import Adjustment
 from gearcam.base.errors import InfeasibleError, beyond_limit
-from gearcam.base.numerals import formatted, rounds_to
+from gearcam.base.numerals import FEW, formatted, rounds_to
 from gearcam.base.quantities import ANGLE, Solve, param
 from gearcam.base.rules import together
 from gearcam.laws.entry import NO_JUMPS
@@ -352,7 +352,7 @@ def open_travel(wheel: str, own: str = "") -> Any:
 
 def angle_text(angle: float) -> str:
     """Return a driver angle, rad, as a place for messages."""
-    return f"phi1 = {formatted(round(math.degrees(angle), 6) + 0.0)} deg"
+    return f"phi1 = {formatted(round(math.degrees(angle), 6) + 0.0, FEW)} deg"
 
 
 def continued(ratio: Piecewise, pieces: list[Piece], mate: int) -> tuple[Array, list[Piece]]:

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from gearcam.base.errors import InfeasibleError
+from gearcam.base.readable import readable
 from gearcam.cli import main
 from gearcam.gears.spec import BasicRack, Rack
 from gearcam.laws.ratio.ellipse import Ellipse
@@ -96,7 +97,7 @@ def test_what_yielded_is_said(
     told = capsys.readouterr().out
     rack = used(pressure_angle=math.radians(angle))
     (line,) = (line for line in told.splitlines() if "tip radius" in line)
-    assert f"{rack.tip_radius:.6g} modules" in line
+    assert readable(rack.tip_radius, "modules") in line
     assert "changed from the default 0.38" in line
     found = json.loads((tmp_path / "y" / "summary.json").read_text())["pair"]["rack"]
     assert found["tip_radius"] == pytest.approx(rack.tip_radius)

@@ -424,7 +424,7 @@ def test_what_is_asked_for_is_answered_on_the_console() -> None:
         value, unit, place = shown[meaning]
         assert (value, unit) == (pytest.approx(deg * found.length), "deg")
         ends = [float(one) for one in place.removesuffix(" deg").split(" to ")]
-        assert ends == pytest.approx([deg * found.begin, deg * found.end], rel=1e-5)
+        assert ends == pytest.approx([deg * found.begin, deg * found.end], rel=5e-5)
     line = shown["deviation of P from the line"]
     assert line == (result.stretches[0].deviation, "mm", "300 to 400 deg")
 
@@ -449,10 +449,10 @@ def test_tables_are_changed_by_their_numbers(key: str, allowed: str, hint: str) 
 @pytest.mark.parametrize(
     ("profile", "called"),
     [
-        ("two_cam_table", "TRT behind 2 cams"),
-        ("oscillating_cylinder", "RTRR behind an even shaft and a slide"),
-        ("geneva", "linkage behind an even shaft"),
-        ("lathe_levers", "RRR + RRT behind a cam"),
+        ("two_cam_table", "table between slides driven by 2 cams"),
+        ("oscillating_cylinder", "cylinder driven by an even shaft and a slide"),
+        ("geneva", "linkage driven by an even shaft"),
+        ("lathe_levers", "coupler and rocker + rod and slide driven by a cam"),
     ],
 )
 def test_all_drives_are_named(profile: str, called: str) -> None:
@@ -509,7 +509,7 @@ def test_a_comparison_has_no_places_of_what_stands_still() -> None:
     assert np.isnan(table["velocity_at_deg"]).tolist() == [one == "A_x" for one in table["output"]]
 
 
-@pytest.mark.parametrize(("before", "text"), [(1e-9, "0"), (3e-6, "0"), (1e-4, "359.994")])
+@pytest.mark.parametrize(("before", "text"), [(1e-9, "0"), (3e-6, "0"), (1e-4, "359.99")])
 def test_a_place_just_before_the_end_of_a_turn_is_said_in_one_way(before: float, text: str) -> None:
     result, place = pushed(), math.tau - before
     assert result.degrees(place) == text

@@ -131,8 +131,8 @@ def test_rates_are_by_time_where_the_master_has_a_speed() -> None:
     result = asked(drive=[{**drive, "speed_rpm": 90}])
     table = result.motion(np.radians(next(iter(drawn(result, "velocity").values()))[0]))
     for chart, column, unit in (
-        ("velocity", "C_mm_s", "mm/s"), ("acceleration", "C_mm_s2", "mm/s^2"),
-        ("jerk", "C_mm_s3", "mm/s^3"),
+        ("velocity", "C_mm_s", "mm/s"), ("acceleration", "C_mm_s2", "mm/s2"),
+        ("jerk", "C_mm_s3", "mm/s3"),
     ):  # fmt: skip
         ((_, y),) = drawn(result, chart).values()
         np.testing.assert_allclose(y, table[column], rtol=1e-12, atol=1e-7)

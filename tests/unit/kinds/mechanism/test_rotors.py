@@ -394,7 +394,7 @@ def test_the_console_tells_both_weights(tmp_path: Any, capsys: pytest.CaptureFix
     (tmp_path / "m.toml").write_text(text, "utf-8")
     assert main(["balance", str(tmp_path / "m.toml"), "-o", str(tmp_path)]) == 0
     told = capsys.readouterr().out
-    for place, size in ((20, "5.6732"), (220, "2.05947")):
+    for place, size in ((20, "5.673"), (220, "2.059")):
         assert f"rotor shaft: weight at {place} mm, mass times distance" in told
         assert f"{size} kg mm" in told
     assert "deg in the frame of a" in told

@@ -43,6 +43,18 @@ _CYLINDER: Final = "RTRR"
 TYPES: Final = (*dict.fromkeys(name.rstrip("12") for name in DYADS), _CYLINDER)
 """Types of dyads: R is a hinge, T a slide."""
 
+_CALLED: Final = {
+    "RRR": "coupler and rocker",
+    "RRT": "rod and slide",
+    "TRR": "rod and slide",
+    "RTR": "swinging guide",
+    "RTRR": "cylinder",
+    "TRT": "table between slides",
+    "RTT": "cross slide",
+    "TTR": "cross slide",
+}
+"""What the members of each are called."""
+
 BRANCHES: Final = tuple(dict.fromkeys(name for one in DYADS.values() for name in one.branches))
 
 
@@ -356,8 +368,8 @@ class DyadSpec(MachinePart):
             yield "four_bars", self.joint, tree
 
     def called(self) -> str:
-        """Return its type."""
-        return self.type
+        """Return what its members are."""
+        return _CALLED[self.type]
 
     # --- what acts on it -------------------------------------------------------------------------
 

@@ -99,7 +99,7 @@ def guided_chain(result: Any, limit: float) -> Iterator[Remark]:  # noqa: ARG001
             yield Remark(
                 f"The chain does not lead straight to its wheel on the shaft {hoist.on}, at "
                 f"({numbers(shaft)}) mm: this is how far it passes beside the shaft, on the side "
-                f"where it is wound up, not the radius of {formatted(hoist.radius, 6)} mm. It is "
+                f"where it is wound up, not the radius of {formatted(hoist.radius)} mm. It is "
                 f"taken to be guided; it is straight with at_mm = [{numbers(straight)}].",
                 f"hoist[{number}].at_mm",
                 beside,
