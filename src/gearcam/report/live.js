@@ -8,6 +8,7 @@
   // Numbers in the page that are not saved in the file, by key.
   let pending = {};
   let told = ""; // beside the buttons when nothing is pending
+  let over = false; // whether the server has ended, or was started again
   const rows = new Map();
 
   // While the server answers one request a second one is sent; more would only wait there.
@@ -87,7 +88,7 @@
   }
 
   async function send() {
-    if (!wanted || flying >= MOST) return;
+    if (!wanted || flying >= MOST || over) return;
     const asked = wanted;
     const turn = ++sent;
     const from = made;
@@ -101,6 +102,7 @@
         if (reply.refused && asked.exact) remedy(reply.changes, asked.last, turn).catch(ended);
       }
     } catch {
+      wanted ??= asked; // again when the server answers
       ended();
     }
     flying -= 1;
@@ -137,7 +139,7 @@
 
   function enable() {
     const none = Object.keys(pending).length === 0;
-    for (const id of ["save", "undo"]) document.getElementById(id).disabled = none;
+    for (const id of ["save", "undo"]) document.getElementById(id).disabled = none || over;
     document.getElementById("saved").textContent = none ? told : "Not saved.";
   }
 
@@ -237,8 +239,73 @@
     addButtons();
   }
 
+  // --- the server ------------------------------------------------------------------------------
+
+  const PAUSE = 2000; // ms between two tries to reach it
+  const KEPT = `gearcam numbers of ${location.pathname}`;
+  let events = null;
+
+  // Say something about the live view itself, above all else; or nothing more.
+  function notify(text, ...buttons) {
+    const box = document.getElementById("notice");
+    box.hidden = !text;
+    box.replaceChildren(text, ...buttons);
+  }
+
+  // Try to reach the server until it answers.
+  function listen() {
+    events = new EventSource("events");
+    events.addEventListener("run", ({ data }) => met(data));
+    events.onmessage = (event) => !over && follow(event).catch(ended);
+    events.onerror = ended;
+  }
+
   function ended() {
-    tell("The live view has ended: the page no longer follows the file. Start gearcam view again.");
+    if (!events) return; // it is known
+    events.close();
+    events = null;
+    setTimeout(listen, PAUSE);
+    over = true;
+    enable();
+    notify("The live view has ended: the page no longer follows the file. Start gearcam view again.");
+  }
+
+  // The server answers: the one of this page, or one that was started since.
+  function met(run) {
+    if (run === live.run) {
+      if (over) notify("");
+      over = false;
+      send();
+    } else {
+      over = true;
+      const button = element("button", { type: "button", textContent: "Reload" });
+      button.addEventListener("click", reload);
+      notify("The live view was started again. ", button);
+    }
+    enable();
+  }
+
+  // Reload the page; numbers that are not saved are kept.
+  function reload() {
+    sessionStorage.setItem(KEPT, JSON.stringify(pending));
+    pending = {};
+    location.reload();
+  }
+
+  // Have the numbers that were kept again; those that the file no longer has are told.
+  function resume() {
+    const kept = JSON.parse(sessionStorage.getItem(KEPT) ?? "{}");
+    sessionStorage.removeItem(KEPT);
+    const known = Object.keys(kept).filter((key) => rows.has(key));
+    if (known.length) {
+      for (const key of known) set(key, kept[key]);
+      ask(known.at(-1), true);
+    }
+    const lost = Object.keys(kept).filter((key) => !rows.has(key));
+    if (!lost.length) return;
+    const button = element("button", { type: "button", textContent: "Close" });
+    button.addEventListener("click", () => notify(""));
+    notify(`Not kept, because the file has no such number to change now: ${lost.join(", ")}. `, button);
   }
 
   // The solids of the numbers in the page.
@@ -257,10 +324,9 @@
   });
 
   window.gearcam.solids.from(solids);
-  const events = new EventSource("events");
-  events.onmessage = (event) => follow(event).catch(ended);
-  events.onerror = ended;
   offer(live.keys);
   addButtons();
   tell(live.error, Boolean(live.error));
+  listen();
+  resume();
 })();
