@@ -3,7 +3,7 @@
 
 (() => {
   const live = JSON.parse(document.getElementById("live").textContent);
-  let { made, number } = live;
+  let { made, number, values } = live; // values: all numbers of the file by key
 
   // Numbers in the page that are not saved in the file, by key.
   let pending = {};
@@ -56,12 +56,12 @@
     addButtons();
   }
 
-  // Give remedies that change nothing but numbers with sliders a button.
+  // Give remedies that change nothing but numbers of the file a button.
   function addButtons() {
     for (const item of document.querySelectorAll("li[data-changes]:not(:has(button))")) {
       const changes = Object.entries(JSON.parse(item.dataset.changes)).flatMap(([key, value]) =>
         Array.isArray(value) ? value.map((one, k) => [`${key}[${k}]`, one]) : [[key, value]]);
-      if (!changes.every(([key, value]) => rows.has(key) && Number.isFinite(value))) continue;
+      if (!changes.every(([key, value]) => key in values && Number.isFinite(value))) continue;
       const button = element("button", { type: "button", textContent: "Use this" });
       button.setAttribute("aria-label", `Use this: ${item.firstChild.textContent}`);
       button.addEventListener("click", () => {
@@ -83,7 +83,7 @@
 
   function ask(last, exact) {
     told = "";
-    wanted = { changes: { ...pending }, last, exact };
+    wanted = { changes: { ...pending, [last]: pending[last] ?? values[last] }, last, exact };
     send();
   }
 
@@ -129,11 +129,12 @@
   // Show a number at its slider and in its field; it is pending until it is saved.
   function set(key, value) {
     pending[key] = value;
+    if (value === values[key]) delete pending[key];
     const row = rows.get(key);
-    if (!row) return;
-    row.slider.value = row.field.value = value;
-    if (value === row.key.value) delete pending[key];
-    row.place.classList.toggle("changed", key in pending);
+    if (row) {
+      row.slider.value = row.field.value = value;
+      row.place.classList.toggle("changed", key in pending);
+    }
     enable();
   }
 
@@ -148,13 +149,15 @@
     return Number((Math.round(value / key.step) * key.step).toPrecision(10));
   }
 
-  function rowOf(key) {
-    const word = key.key.replace(/^.*\./, "");
-    const label = element("label", { htmlFor: `key-${key.key}`, textContent: word });
+  // The words for a key are seen once: not below its own name, nor at the next items of a list.
+  function rowOf(key, above) {
+    const names = { textContent: key.label, title: key.key };
+    const label = element("label", { htmlFor: `key-${key.key}`, ...names });
     const range = { type: "range", min: key.low, max: key.high, step: "any", value: key.value };
     const slider = element("input", { id: label.htmlFor, ...range });
     const field = element("input", { type: "number", step: "any", value: key.value });
     const told = element("small", { id: `doc-${key.key}`, textContent: key.doc });
+    told.hidden = [key.label, above?.doc].includes(key.doc);
     slider.setAttribute("aria-label", key.key);
     field.setAttribute("aria-label", `${key.key}, number`);
     slider.setAttribute("aria-describedby", told.id);
@@ -191,12 +194,13 @@
   function build(keys) {
     rows.clear();
     const groups = new Map();
-    for (const key of keys) {
-      const title = key.key.replace(/\.[^.]*$/, "");
-      if (!groups.has(title)) {
-        groups.set(title, element("fieldset", {}, element("legend", { textContent: title })));
+    for (const [k, key] of keys.entries()) {
+      const table = key.key.replace(/\.[^.]*$/, "");
+      const names = { textContent: key.group, title: table };
+      if (!groups.has(table)) {
+        groups.set(table, element("fieldset", {}, element("legend", names)));
       }
-      groups.get(title).append(rowOf({ ...key }));
+      groups.get(table).append(rowOf({ ...key }, keys[k - 1]));
     }
     const save = element("button", { id: "save", type: "button", textContent: "Save to the file" });
     const undo = element("button", { id: "undo", type: "button", textContent: "Undo the changes" });
@@ -219,7 +223,7 @@
   }
 
   async function back() {
-    for (const row of rows.values()) set(row.key.key, row.key.value);
+    for (const key of Object.keys(pending)) set(key, values[key]);
     arrived = sent; // replies to earlier requests are ignored
     wanted = null;
     location.reload();
@@ -233,7 +237,7 @@
     if (state.document) show(state.document);
     tell(state.error, Boolean(state.error));
     if (state.made !== made) {
-      made = state.made;
+      ({ made, values } = state);
       offer(state.keys);
     }
     addButtons();
@@ -296,12 +300,12 @@
   function resume() {
     const kept = JSON.parse(sessionStorage.getItem(KEPT) ?? "{}");
     sessionStorage.removeItem(KEPT);
-    const known = Object.keys(kept).filter((key) => rows.has(key));
+    const known = Object.keys(kept).filter((key) => key in values);
     if (known.length) {
       for (const key of known) set(key, kept[key]);
       ask(known.at(-1), true);
     }
-    const lost = Object.keys(kept).filter((key) => !rows.has(key));
+    const lost = Object.keys(kept).filter((key) => !(key in values));
     if (!lost.length) return;
     const button = element("button", { type: "button", textContent: "Close" });
     button.addEventListener("click", () => notify(""));

@@ -71,6 +71,7 @@ class State:
             "number": self.number,
             "document": self.news,
             "keys": self.sliders,
+            "values": numbers(self.text) if self.text else {},
             "made": self.made,
             "error": self.error,
         }
