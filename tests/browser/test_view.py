@@ -375,6 +375,7 @@ def test_the_page_of_a_kind_without_moving_parts_follows_file_and_sliders(
         browser.get_log("browser")
         browser.get(server.address)
         until(lambda: browser.execute_script("return !!window.gearcam"))
+        assert browser.find_elements(By.CSS_SELECTOR, '#solids, nav a[href="#solids"]') == []
         (figure,) = browser.find_elements(By.CLASS_NAME, "chart")
         assert figure.find_element(By.TAG_NAME, "h3").text == "Mass"
         assert "30 mm" in text_of(browser, "facts")

@@ -234,6 +234,12 @@
     const state = await (await fetch("document")).json();
     if (state.number <= number) return;
     number = state.number;
+    // another kind of design has another page
+    const { kind, solids } = state.document ?? {};
+    if (kind && (kind !== live.kind || (solids ?? live.solids) !== live.solids)) {
+      pending = {};
+      location.reload();
+    }
     if (state.document) show(state.document);
     tell(state.error, Boolean(state.error));
     if (state.made !== made) {

@@ -174,6 +174,7 @@ class Handler(BaseHTTPRequestHandler):
         else:
             more = {name: value for name, value in state.message.items() if name != "document"}
             live = {"token": self._home.token, "run": self._home.run, "file": session.file}
+            live |= {name: state.document[name] for name in ("kind", "solids")}
             content = page(state.document, live=live | more)
         self._send(content, _HTML)
 
