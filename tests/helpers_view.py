@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import socket
 import threading
 import time
 from collections.abc import Iterator
@@ -67,9 +68,16 @@ def shown(file: Path) -> Iterator[Shown]:
         session.end()
 
 
+def free_port() -> int:
+    """A port that nothing uses now."""
+    with socket.socket() as one:
+        one.bind(("127.0.0.1", 0))
+        return one.getsockname()[1]
+
+
 @contextmanager
-def served(file: Path) -> Iterator[tuple[Server, Shown]]:
-    with shown(file) as view, Server(view.session) as server:
+def served(file: Path, port: int = 0) -> Iterator[tuple[Server, Shown]]:
+    with shown(file) as view, Server(view.session, port) as server:
         threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.02}).start()
         view.refresh()
         try:

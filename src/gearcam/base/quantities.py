@@ -94,6 +94,9 @@ def unit_of(key: str) -> str:
     return _SUFFIXES[max((one for one in _SUFFIXES if key.endswith(one)), key=len)]
 
 
+WHEELS: Final = "wheel 1 and wheel 2"
+"""The `order` of values of both wheels: the driver is wheel 1."""
+
 LONGEST: Final = 1e5
 """Largest length of a design, mm."""
 
@@ -135,7 +138,7 @@ class Param:
     both : bool
         Whether a single value may be given for two, such as both wheels.
     order : str
-        Which of two values comes first.
+        Which of two values comes first: what both are called, such as ``x, y``.
     alone : bool
         Whether a single value may be given for a list of one.
     function : bool
@@ -168,7 +171,7 @@ class Param:
     example: Any = None
     word: str = ""
     both: bool = False
-    order: str = "driver first"
+    order: str = ""
     alone: bool = False
     function: bool = False
     nested: tuple[str, ...] = ()
@@ -182,6 +185,12 @@ class Param:
         if self.gt == 0.0 and self.quantity.least:
             object.__setattr__(self, "gt", None)
             object.__setattr__(self, "ge", self.quantity.least)
+
+    @property
+    def called(self) -> tuple[str, ...]:
+        """What the two values of a list are called; empty if nothing is known of them."""
+        order = self.order or (WHEELS if self.both else "")
+        return tuple(re.split(", | and ", order)) if order else ()
 
     @property
     def least(self) -> float:

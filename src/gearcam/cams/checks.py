@@ -100,7 +100,7 @@ def _at(motion: PitchMotion, place: str) -> str:
             gt=0,
             lt=90,
             both=True,
-            order="rise first",
+            order="rise and return",
             example=30,
             doc="largest pressure angle of rises and returns; 30 translating, 45 oscillating",
         ),

@@ -152,7 +152,7 @@ def allowed(entry: Key, *, item: bool = False) -> str:
         return _single(entry)
     param = entry.param
     if param.both:
-        return f"{_single(entry)}, or two of them, {param.order}"
+        return f"{_single(entry)}, or two of them, {param.order or 'driver first'}"
     if param.alone:
         return f"{_single(entry)}, or a list of them"
     if entry.length:

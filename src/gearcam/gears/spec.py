@@ -12,6 +12,7 @@ from gearcam.base.quantities import (
     LENGTH,
     NUMBER,
     TEXT,
+    WHEELS,
     param,
     positive_length,
 )
@@ -168,6 +169,7 @@ class PairSpec(ShortRepr):
         COUNT,
         ge=3,
         le=MOST_TEETH,
+        order=WHEELS,
         doc="numbers of teeth, driver first; a ring that turns fully has more than its pinion",
     )
     x: float = param(

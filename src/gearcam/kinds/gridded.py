@@ -240,6 +240,11 @@ class GriddedCam(LoadedCam, Result):
         poses = {STEM: turned, **self.moved_poses(theta)}
         return {name: one.mirrored if self.cam.clockwise else one for name, one in poses.items()}
 
+    @property
+    def place_of_solids(self) -> str:
+        """Where a page shows the solids (see `Result`): the picture is only a cam unrolled."""
+        return "first"
+
     def standing(self, chords: float = 0.0) -> dict[str, tuple[Mesh, SpacePose]]:
         """Return cam and follower at the angle of the design, as meshes (see `Result`)."""
         poses, meshes = self.in_space(np.array([self.design.output.pose])), self.shown(chords)

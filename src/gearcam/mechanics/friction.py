@@ -38,6 +38,7 @@ class FrictionSpec(ShortRepr):
         gt=0,
         le=LONGEST,
         both=True,
+        order="shaft and pin",
         example=[10, 3],
         doc="radius of the journals of shaft and pivot, and that of a roller's pin",
     )

@@ -21,7 +21,8 @@ data sheets (plastics, solid, at room temperature). Strength depends on the grad
 
 
 def _both(quantity: Any, example: Any, *, doc: str, **bounds: Any) -> Any:
-    return param(quantity, default=None, both=True, example=example, doc=doc, **bounds)
+    more = {"both": True, "order": "driver or cam and driven wheel or roller", "example": example}
+    return param(quantity, default=None, doc=doc, **more, **bounds)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,6 +57,7 @@ class MaterialSpec(ShortRepr):
         MPA,
         default=None,
         both=True,
+        order="driver or cam and driven wheel or roller",
         word="yield",
         gt=0,
         le=1e5,

@@ -13,6 +13,9 @@ from gearcam.base.quantities import ANGLE, COUNT, LENGTH, TEXT, param, positive_
 from gearcam.base.rules import Breach, above, distinct, excluded
 from gearcam.laws.columns import ColumnsError, FromFile
 
+_TILTS: Final = "in the plane of the axes and across it"
+"""What both tilts are called."""
+
 KIND = "meshing"
 """Registered checks of a study."""
 
@@ -149,6 +152,7 @@ class ErrorsSpec(FromFile):
         default=(0.0, 0.0),
         ge=-10,
         le=10,
+        order=_TILTS,
         doc="tilt of the driver's axis in the plane of the axes, and across it",
     )
     file: str | None = param(
@@ -173,7 +177,7 @@ class ErrorsSpec(FromFile):
         LENGTH, default=(0.0, 0.0), ge=0, le=100, both=True, doc="tolerance of the eccentricity"
     )
     tilt_tolerance: tuple[float, float] = param(
-        ANGLE, default=(0.0, 0.0), ge=0, le=10, doc="tolerance of both tilts"
+        ANGLE, default=(0.0, 0.0), ge=0, le=10, order=_TILTS, doc="tolerance of both tilts"
     )
     pitch_tolerance: float = param(
         LENGTH, default=0.0, ge=0, le=100, doc="tolerance of the place of each tooth of both wheels"

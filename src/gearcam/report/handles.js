@@ -66,7 +66,7 @@ class HandleTool {
     if (near === this.near) return;
     this.near = near;
     event.target.style.cursor = near ? "move" : "";
-    event.target.title = near ? `Drag to change ${this.keysOf(near).join(", ")}` : "";
+    event.target.title = near ? `Drag to change ${this.keysOf(near).map(this.numbers.called).join("; ")}` : "";
     this.gearcam.redraw();
   }
 

@@ -9,6 +9,7 @@
   // Numbers in the page that are not saved in the file, by key.
   let pending = {};
   let told = ""; // beside the buttons when nothing is pending
+  let over = false; // whether the server has ended, or was started again
   const rows = new Map();
   const locked = new Set(); // keys that dragging in the picture leaves as they are
 
@@ -57,12 +58,12 @@
     addButtons();
   }
 
-  // Give remedies that change nothing but numbers with sliders a button.
+  // Give remedies that change nothing but numbers of the file a button.
   function addButtons() {
     for (const item of document.querySelectorAll("li[data-changes]:not(:has(button))")) {
       const changes = Object.entries(JSON.parse(item.dataset.changes)).flatMap(([key, value]) =>
         Array.isArray(value) ? value.map((one, k) => [`${key}[${k}]`, one]) : [[key, value]]);
-      if (!changes.every(([key, value]) => rows.has(key) && Number.isFinite(value))) continue;
+      if (!changes.every(([key, value]) => key in values && Number.isFinite(value))) continue;
       const button = element("button", { type: "button", textContent: "Use this" });
       button.setAttribute("aria-label", `Use this: ${item.firstChild.textContent}`);
       button.addEventListener("click", () => {
@@ -89,6 +90,7 @@
     at: (key) => pending[key] ?? values[key],
     range: (key) => rows.get(key).key.high - rows.get(key).key.low,
     unit: (key) => rows.get(key).key.unit,
+    called: (key) => `${rows.get(key).key.group}, ${rows.get(key).key.label}`,
     allowed(key) {
       const { least, most } = rows.get(key)?.key ?? {};
       return [least ?? -Infinity, most ?? Infinity];
@@ -128,12 +130,13 @@
 
   function ask(last, exact) {
     told = "";
-    wanted = { changes: { ...pending }, last, exact };
+    const asked = Object.fromEntries([last].flat().map((key) => [key, numbers.at(key)]));
+    wanted = { changes: { ...pending, ...asked }, last, exact };
     send();
   }
 
   async function send() {
-    if (!wanted || flying >= MOST) return;
+    if (!wanted || flying >= MOST || over) return;
     const asked = wanted;
     const turn = ++sent;
     const from = made;
@@ -149,6 +152,7 @@
         if (reply.refused && asked.exact) remedy(reply.changes, asked.last, turn).catch(ended);
       }
     } catch {
+      wanted ??= asked; // again when the server answers
       ended();
     }
     flying -= 1;
@@ -180,17 +184,18 @@
     pending[key] = value;
     if (value === values[key]) delete pending[key];
     const row = rows.get(key);
-    if (!row) return;
-    row.slider.min = Math.min(row.slider.min, value);
-    row.slider.max = Math.max(row.slider.max, value);
-    row.slider.value = row.field.value = value;
-    row.place.classList.toggle("changed", key in pending);
+    if (row) {
+      row.slider.min = Math.min(row.slider.min, value);
+      row.slider.max = Math.max(row.slider.max, value);
+      row.slider.value = row.field.value = value;
+      row.place.classList.toggle("changed", key in pending);
+    }
     enable();
   }
 
   function enable() {
     const none = Object.keys(pending).length === 0;
-    for (const id of ["save", "undo"]) document.getElementById(id).disabled = none;
+    for (const id of ["save", "undo"]) document.getElementById(id).disabled = none || over;
     const others = Object.entries(pending).filter(([key]) => !rows.has(key));
     const also = others.map(([key, value]) => ` ${key} = ${value}`).join(",");
     document.getElementById("saved").textContent = none ? told
@@ -202,13 +207,15 @@
     return Number((Math.round(value / key.step) * key.step).toPrecision(10));
   }
 
-  function rowOf(key) {
-    const word = key.key.replace(/^.*\./, "");
-    const label = element("label", { htmlFor: `key-${key.key}`, textContent: word });
+  // The words for a key are seen once: not below its own name, nor at the next items of a list.
+  function rowOf(key, above) {
+    const names = { textContent: key.label, title: key.key };
+    const label = element("label", { htmlFor: `key-${key.key}`, ...names });
     const range = { type: "range", min: key.low, max: key.high, step: "any", value: key.value };
     const slider = element("input", { id: label.htmlFor, ...range });
     const field = element("input", { type: "number", step: "any", value: key.value });
     const told = element("small", { id: `doc-${key.key}`, textContent: key.doc });
+    told.hidden = [key.label, above?.doc].includes(key.doc);
     slider.setAttribute("aria-label", key.key);
     field.setAttribute("aria-label", `${key.key}, number`);
     slider.setAttribute("aria-describedby", told.id);
@@ -253,12 +260,13 @@
   function build(keys) {
     rows.clear();
     const groups = new Map();
-    for (const key of keys) {
-      const title = key.key.replace(/\.[^.]*$/, "");
-      if (!groups.has(title)) {
-        groups.set(title, element("fieldset", {}, element("legend", { textContent: title })));
+    for (const [k, key] of keys.entries()) {
+      const table = key.key.replace(/\.[^.]*$/, "");
+      const names = { textContent: key.group, title: table };
+      if (!groups.has(table)) {
+        groups.set(table, element("fieldset", {}, element("legend", names)));
       }
-      groups.get(title).append(rowOf({ ...key }));
+      groups.get(table).append(rowOf({ ...key }, keys[k - 1]));
     }
     const save = element("button", { id: "save", type: "button", textContent: "Save to the file" });
     const undo = element("button", { id: "undo", type: "button", textContent: "Undo the changes" });
@@ -295,7 +303,7 @@
   }
 
   async function back() {
-    for (const row of rows.values()) set(row.key.key, row.key.value);
+    for (const key of Object.keys(pending)) set(key, values[key]);
     arrived = sent; // replies to earlier requests are ignored
     wanted = null;
     location.reload();
@@ -306,18 +314,88 @@
     const state = await (await fetch("document")).json();
     if (state.number <= number) return;
     number = state.number;
+    // another kind of design has another page
+    const { kind, solids } = state.document ?? {};
+    if (kind && (kind !== live.kind || (solids ?? live.solids) !== live.solids)) {
+      pending = {};
+      location.reload();
+    }
     if (state.document) show(state.document);
     tell(state.error, Boolean(state.error));
     if (state.made !== made) {
-      made = state.made;
-      values = state.values;
+      ({ made, values } = state);
       offer(state.keys);
     }
     addButtons();
   }
 
+  // --- the server ------------------------------------------------------------------------------
+
+  const PAUSE = 2000; // ms between two tries to reach it
+  const KEPT = `gearcam numbers of ${location.pathname}`;
+  let events = null;
+
+  // Say something about the live view itself, above all else; or nothing more.
+  function notify(text, ...buttons) {
+    const box = document.getElementById("notice");
+    box.hidden = !text;
+    box.replaceChildren(text, ...buttons);
+  }
+
+  // Try to reach the server until it answers.
+  function listen() {
+    events = new EventSource("events");
+    events.addEventListener("run", ({ data }) => met(data));
+    events.onmessage = (event) => !over && follow(event).catch(ended);
+    events.onerror = ended;
+  }
+
   function ended() {
-    tell("The live view has ended: the page no longer follows the file. Start gearcam view again.");
+    if (!events) return; // it is known
+    events.close();
+    events = null;
+    setTimeout(listen, PAUSE);
+    over = true;
+    enable();
+    notify("The live view has ended: the page no longer follows the file. Start gearcam view again.");
+  }
+
+  // The server answers: the one of this page, or one that was started since.
+  function met(run) {
+    if (run === live.run) {
+      if (over) notify("");
+      over = false;
+      send();
+    } else {
+      over = true;
+      const button = element("button", { type: "button", textContent: "Reload" });
+      button.addEventListener("click", reload);
+      notify("The live view was started again. ", button);
+    }
+    enable();
+  }
+
+  // Reload the page; numbers that are not saved are kept.
+  function reload() {
+    sessionStorage.setItem(KEPT, JSON.stringify(pending));
+    pending = {};
+    location.reload();
+  }
+
+  // Have the numbers that were kept again; those that the file no longer has are told.
+  function resume() {
+    const kept = JSON.parse(sessionStorage.getItem(KEPT) ?? "{}");
+    sessionStorage.removeItem(KEPT);
+    const known = Object.keys(kept).filter((key) => key in values);
+    if (known.length) {
+      for (const key of known) set(key, kept[key]);
+      ask(known.at(-1), true);
+    }
+    const lost = Object.keys(kept).filter((key) => !(key in values));
+    if (!lost.length) return;
+    const button = element("button", { type: "button", textContent: "Close" });
+    button.addEventListener("click", () => notify(""));
+    notify(`Not kept, because the file has no such number to change now: ${lost.join(", ")}. `, button);
   }
 
   // The solids of the numbers in the page.
@@ -341,10 +419,9 @@
     window.gearcam.page.seen.marked = (_, pixel) => tool.marks(pixel);
     window.gearcam.parts.tool = tool;
   }
-  const events = new EventSource("events");
-  events.onmessage = (event) => follow(event).catch(ended);
-  events.onerror = ended;
   offer(live.keys);
   addButtons();
   tell(live.error, Boolean(live.error));
+  listen();
+  resume();
 })();

@@ -187,7 +187,8 @@ def document(
     Returns
     -------
     dict
-        ``title``, ``kind``, ``blocks``, ``scene`` (None without moving parts), ``charts``.
+        ``title``, ``kind``, ``blocks``, ``scene`` (None without moving parts), ``charts``,
+        ``solids`` (``"first"``, ``"after"`` or nothing, see `Result.place_of_solids`).
 
     Raises
     ------
@@ -199,6 +200,7 @@ def document(
     return {
         "title": result.design.name,
         "kind": result.design.kind,
+        "solids": result.place_of_solids,
         "scene": scene_data(scene) if scene else None,
         "charts": [chart_data(name, result.chart(name), driver) for name in result.charts],
         "blocks": blocks(result, measured, seek=seek),

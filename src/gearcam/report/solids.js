@@ -1,4 +1,5 @@
-// The view of the solids: a separate page in a frame, loaded when first opened. Its globals (scene,
+// The view of the solids: a separate page in a frame, loaded when first opened; of parts in space it
+// is open from the beginning, and loaded when the page has been drawn. Its globals (scene,
 // camera, controls, render, THREE) serve to move, fit, colour and print it. Each solid is an object
 // with the name of its body. The live view asks the server for it, and again for each document.
 
@@ -10,6 +11,7 @@ const solids = (() => {
   const TURN = Math.PI / 18; // per arrow key, rad
   const ZOOM = 1.15; // factor per + or -
   const AROUND = 24; // places at which all must be in sight
+  const MARGIN = 1.02;
   const hint = home.querySelector(".hint");
   const HINT = hint.textContent;
   let frame = null;
@@ -53,11 +55,12 @@ const solids = (() => {
   function open() {
     if (!home.open) return;
     if (frame) move(posesAt, place, scene);
-    if (!late) return;
+    const held = document.getElementById("solids-view"); // stands after the script
+    if (!late || !(load || held)) return;
     late = false;
     if (!drawn()) hint.textContent = "This browser cannot show solids: it has no WebGL.";
     else if (load) ask();
-    else show(JSON.parse(document.getElementById("solids-view").textContent));
+    else show(JSON.parse(held.textContent));
   }
 
   // Ask for the view of another document; what is folded is asked for when it is opened.
@@ -156,15 +159,22 @@ const solids = (() => {
     camera.position.copy(controls.target).add(new THREE.Vector3(...scene.eye));
   }
 
-  // Set the camera at the distance at which the bodies fit in the narrower direction, at all places.
+  // Set the camera at the distance at which the bodies fit, seen from where it looks, at all places.
   function fit(inside) {
     const { camera, controls } = inside;
-    const away = (ball) => ball.center.distanceTo(controls.target) + ball.radius;
-    const radius = Math.max(...balls(inside).map(away));
+    const way = camera.position.clone().sub(controls.target).normalize();
+    const across = camera.up.clone().cross(way).normalize();
+    const up = way.clone().cross(across);
     const tall = Math.tan((camera.fov * Math.PI) / 360);
-    const far = radius / Math.sin(Math.atan(tall * Math.min(1, camera.aspect)));
-    const way = camera.position.clone().sub(controls.target).setLength(far);
-    camera.position.copy(controls.target).add(way);
+    const wide = tall * camera.aspect;
+    const room = (aside, radius, half) => (Math.abs(aside) + radius * Math.hypot(1, half)) / half;
+    const away = ({ center, radius }) => {
+      const off = center.sub(controls.target);
+      const sides = [room(off.dot(across), radius, wide), room(off.dot(up), radius, tall)];
+      return off.dot(way) + Math.max(...sides);
+    };
+    const far = MARGIN * Math.max(...balls(inside).map(away));
+    camera.position.copy(controls.target).addScaledVector(way, far);
     camera.near = far / 1000;
     camera.far = 10 * far;
     camera.updateProjectionMatrix();
@@ -215,7 +225,12 @@ const solids = (() => {
   }
 
   home.addEventListener("toggle", open);
+  addEventListener("DOMContentLoaded", () => requestAnimationFrame(open));
   dark.addEventListener("change", () => view() && paint(view()));
   addEventListener("beforeprint", picture);
-  return { move, renew, from: (ask) => (load = ask) };
+  const from = (ask) => {
+    load = ask;
+    open();
+  };
+  return { move, renew, from };
 })();

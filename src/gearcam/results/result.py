@@ -273,6 +273,11 @@ class Result(Staged):
         """The parts at the first place of the driver, as `scene` has them, without studies."""
         return self.plain.scene(1)
 
+    @property
+    def place_of_solids(self) -> str:
+        """Where a page shows the solids: "first", above the picture in the plane, or "after"."""
+        return "after" if type(self).standing is not Result.standing else ""
+
     def standing(
         self,
         chords: float = 0.0,  # noqa: ARG002

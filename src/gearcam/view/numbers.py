@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import Any, Final
 
 from gearcam.designs.design import path_of
@@ -13,6 +13,7 @@ from gearcam.designs.kind import KINDS
 from gearcam.designs.lines import Path, spans_of
 from gearcam.designs.reader import document_in
 from gearcam.designs.table import Key
+from gearcam.view.names import label_of, title_of
 
 Values = Mapping[str, float]
 """Numbers by dotted key, in the units of the file."""
@@ -28,6 +29,12 @@ _STEPS: Final = 1000.0
 
 _FEWER: Final = (1.0, 0.5, 0.25, 0.1, 0.03)
 """Shares of a slider's range that are tried until its end is a valid design."""
+
+_NUDGE: Final = 0.01
+"""Share of a slider's range by which a number is moved to see whether it can be."""
+
+_NUDGES: Final = 6
+"""Number of such moves to either side: tooth counts need not be made one by one."""
 
 _GRAIN: Final = 1e-6
 """Rounding error of the end of a slider, at most, relative to its step."""
@@ -46,7 +53,11 @@ def numbers(text: str) -> dict[str, float]:
     }
 
 
-def sliders(text: str, reads: Callable[[str], bool]) -> list[dict[str, Any]]:
+def sliders(
+    text: str,
+    reads: Callable[[str], bool],
+    moves: Callable[[str, float], Collection[str] | None],
+) -> list[dict[str, Any]]:
     """Return the sliders of a design file.
 
     Parameters
@@ -55,19 +66,26 @@ def sliders(text: str, reads: Callable[[str], bool]) -> list[dict[str, Any]]:
         TOML, a valid design.
     reads : callable
         ``reads(text)`` returns whether another text is a valid design.
+    moves : callable
+        ``moves(key, value)`` returns which numbers have to change with one if a design with its new
+        value is to be made; None if none can be made.
 
     Returns
     -------
     list of dict
-        For each number that can be changed alone or together with its `equals`: ``key``, ``doc``,
-        ``unit``, ``value``, ``low``, ``high``, ``step``, ``integer``; ``least`` and ``most``, all
-        that its key allows, or null.
+        For each number that can be changed, alone or with what has to follow it: ``key``,
+        ``group``, ``label``, ``doc``, ``unit``, ``value``, ``low``, ``high``, ``step``,
+        ``integer``; ``least`` and ``most``, all that its key allows, or null. Numbers that are
+        always equal to another one of their list have no slider of their own: the label of the
+        first one tells of them.
     """
     document, values = document_in(text, ""), numbers(text)
-    sliders = []
+    sliders: list[dict[str, Any]] = []
+    told: set[str] = set()
     for key, value in values.items():
-        entry = _entry(document, path_of(key))
-        if entry is None:
+        path = path_of(key)
+        entry = _entry(document, path)
+        if entry is None or key in told:
             continue
         low, high, step = span(entry, value)
 
@@ -78,10 +96,17 @@ def sliders(text: str, reads: Callable[[str], bool]) -> list[dict[str, Any]]:
             )
 
         low, high = (_within(value, end, step, entry, fits) for end in (low, high))
-        if low < high:
+        tries = _near(value, low, high, step) if low < high else ()
+        more = next((one for to in tries if (one := moves(key, to)) is not None), None)
+        if more is not None:
+            same = [path_of(other) for other in equals(values, key, value) if other in more]
+            told.update(map(dotted, same))
+            table = path[: max(k for k, step in enumerate(path) if isinstance(step, str))]
             sliders.append(
                 {
                     "key": key,
+                    "group": title_of(document, table),
+                    "label": label_of(document, path, entry, same),
                     "doc": entry.param.doc,
                     "unit": entry.param.quantity.unit,
                     "value": value,
@@ -132,6 +157,15 @@ def span(entry: Key, value: float) -> tuple[float, float, float]:
     low = step * math.ceil(low / step - _GRAIN)
     high = step * math.floor(high / step + _GRAIN)
     return min(tidy(low), value), max(tidy(high), value), tidy(step)
+
+
+def _near(value: float, low: float, high: float, step: float) -> Iterator[float]:
+    """Yield some values of a slider near its `value`: whole numbers one after the other."""
+    least = step * max(1.0, round(_NUDGE * (high - low) / step))
+    for count in range(1, _NUDGES + 1):
+        for way in (count * least, -count * least):
+            if low <= value + way <= high:
+                yield tidy(value + way)
 
 
 def equals(values: Values, key: str, new: float) -> dict[str, float]:

@@ -1,8 +1,9 @@
 """The server: one page and its requests, for this computer only.
 
-Every path begins with a random *token*, known only from the address of the page. Requests that name
+Every path begins with a *token*, known only from the address of the page. Requests that name
 another host (DNS rebinding) or come from another page are refused first; paths are only compared
-with known ones, never opened as files.
+with known ones, never opened as files. Each start is a *run* with a name of its own: a page that
+was left open learns from it that the server was started again.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from gearcam.base.errors import DesignError, Problem
 from gearcam.console import complain, fault_text
 from gearcam.report.page import page
 from gearcam.view.session import RequestError, Session
+from gearcam.view.token import token_of
 
 HOME: Final = "127.0.0.1"
 """The only address that is served: the loopback address of this computer."""
@@ -84,7 +86,7 @@ class Server(ThreadingHTTPServer):
             rule = f"1 to {_LAST_PORT}"
             raise DesignError.of(f"{port} is not a port number", key="--port", allowed=rule)
         self.session = session
-        self.token = secrets.token_urlsafe(16)
+        self.token, self.run = token_of(session.file, port), secrets.token_hex(8)
         try:
             super().__init__((HOME, port), Handler)
         except OSError as error:
@@ -167,35 +169,38 @@ class Handler(BaseHTTPRequestHandler):
         session, state = self._home.session, self._home.session.state
         if state.document is None:
             # texts are inserted by its script
-            live = json.dumps({"file": session.file, **state.message}).replace("<", "\\u003c")
+            told = {"file": session.file, "run": self._home.run, **state.message}
+            live = json.dumps(told).replace("<", "\\u003c")
             content = Template(_FIRST.read_text(encoding="utf-8")).substitute(live=live).encode()
         else:
             more = {name: value for name, value in state.message.items() if name != "document"}
-            content = page(
-                state.document, live={"token": self._home.token, "file": session.file, **more}
-            )
+            live = {"token": self._home.token, "run": self._home.run, "file": session.file}
+            live |= {name: state.document[name] for name in ("kind", "solids")}
+            content = page(state.document, live=live | more)
         self._send(content, _HTML)
 
     def _document(self) -> None:
         self._send(_as_json(self._home.session.state.message))
 
     def _events(self) -> None:
-        """Send the number of each new state until the page is closed."""
+        """Send the run, then the number of each new state until the page is closed."""
         self.send_response(HTTPStatus.OK)
         self.send_header("Content-Type", "text/event-stream")
         self.send_header("Connection", "close")
         self.end_headers()
         self.close_connection = True
         session, number = self._home.session, -1
+        before = f"event: run\ndata: {self._home.run}\n\n"
         while not session.ended:
             state = session.wait(number, _PULSE)
             event = f"data: {state.number}\n\n" if state.number != number else ": nothing new\n\n"
             number = state.number
             try:
-                self.wfile.write(event.encode())
+                self.wfile.write((before + event).encode())
                 self.wfile.flush()
             except OSError:
                 return
+            before = ""
 
     def _reply(
         self,

@@ -69,9 +69,26 @@ def show(content: bytes | None, file: str) -> Reply:
                 return False
             return True
 
-        return {"document": document(build(design)), "sliders": sliders(text, reads)}
+        def moves(key: str, value: float) -> Collection[str] | None:
+            return _needed(text, key, value, file)
+
+        return {"document": document(build(design)), "sliders": sliders(text, reads, moves)}
 
     return _reply(answer, file)
+
+
+def _needed(text: str, key: str, value: float, file: str) -> Collection[str] | None:
+    """Return which numbers have to change with one; None if no design can be made with it."""
+
+    def made(values: Values) -> Reply:
+        build(loads(replaced(text, values), file=file)).coarse()
+        return {"changes": values}
+
+    try:
+        reply = _first(text, {key: value}, key, made, file)
+    except Exception:  # of a value that nobody asked for: it is told once somebody does
+        return None
+    return None if "error" in reply else reply["changes"].keys() - {key}
 
 
 def show_draft(content: bytes | None, file: str) -> Reply:

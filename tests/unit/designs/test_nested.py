@@ -234,7 +234,7 @@ def test_the_live_view_sees_a_saved_nested_file(folder: Path) -> None:
 
 def test_sliders_of_a_design_in_place() -> None:
     assert numbers(INLINE)["drive.pair.law.eccentricity"] == 0.3
-    made = {one["key"]: one for one in sliders(INLINE, lambda _: True)}
+    made = {one["key"]: one for one in sliders(INLINE, lambda _: True, lambda *_: ())}
     entry = made["drive.pair.law.eccentricity"]
     assert (entry["low"], entry["high"]) == (0.0, pytest.approx(0.999))
     assert made["drive.pair.pair.teeth[0]"]["integer"]
@@ -322,7 +322,7 @@ def test_several_tables_each_hold_a_design_of_several_kinds() -> None:
     other = design.with_({"drive[1].of.law.eccentricity": 0.2})
     assert [one.of.law.eccentricity for one in other.drive] == [0.3, 0.2]
     assert designs.hash_of(other) != designs.hash_of(design)
-    keys = {one["key"] for one in sliders(template("train", "t"), lambda _: True)}
+    keys = {one["key"] for one in sliders(template("train", "t"), lambda _: True, lambda *_: ())}
     assert {"drive[1].turns", "drive[1].of.law.eccentricity"} <= keys
     assert loads(template("train", "t")).drive[1].turns == 2.0
 

@@ -19,6 +19,7 @@ from gearcam.numeric.arrays import as_pairs
 from gearcam.numeric.contour import Contour
 from gearcam.parts.solids import SolidError
 from gearcam.report.file import CHORDS, solids_shown
+from gearcam.report.page import document, page
 from helpers_pairs import PROFILES
 from helpers_sampling import chosen
 from helpers_solids import bodies_of
@@ -104,6 +105,24 @@ def test_a_page_holds_the_view_and_is_small(tmp_path: Path) -> None:
 def test_a_view_is_the_same_every_time() -> None:
     views = [solids_shown(build("ellipse"))["view"] for _ in range(2)]
     assert views[0] == views[1]
+
+
+@pytest.mark.parametrize(
+    ("name", "place"),
+    [
+        ("cylinder_cam", "first"), ("globoidal_indexer", "first"), ("askew_pair", "first"),
+        ("ellipse", "after"), ("yoke_cam", "after"), ("four_bar", ""),
+    ],
+)  # fmt: skip
+def test_where_a_page_shows_the_solids(name: str, place: str) -> None:
+    shown = document(build(name), seek=False)
+    assert shown["solids"] == place
+    live = page(shown, live={"file": "a"}).decode()
+    assert ('id="solids"' in live, 'href="#solids"' in live) == (place != "", place == "after")
+    assert ('<div id="solids">' in live) is (place == "first")
+    still = page(shown).decode()  # which holds no view
+    assert 'id="solids"' not in still
+    assert "solid-first" not in still.partition("<body")[2].partition(">")[0]
 
 
 MOVED = (

@@ -195,7 +195,9 @@ def test_events_tell_the_number_of_the_state(view: tuple[Server, Shown]) -> None
     answer = connection.getresponse()
     assert answer.headers["Content-Type"] == "text/event-stream"
     number = shown_.session.state.number
-    assert answer.fp.readline() == f"data: {number}\n".encode()
+    lines = [answer.fp.readline() for _ in range(4)]
+    assert lines[:3] == [b"event: run\n", f"data: {server.run}\n".encode(), b"\n"]
+    assert lines[3] == f"data: {number}\n".encode()
     shown_.refresh()
     assert answer.fp.readline() == b"\n"
     assert int(answer.fp.readline().removeprefix(b"data: ")) > number

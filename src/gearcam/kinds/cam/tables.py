@@ -168,6 +168,7 @@ class FollowerDynamicsSpec(ShortRepr):
         ge=0.002,
         le=0.9,
         both=True,
+        order="train and contact",
         doc="damping of train and contact, over that at which the mass behind it alone would not "
         "swing",
     )

@@ -100,6 +100,11 @@ class GearPairResult(MadePair):
         return in_order(findings)
 
     @property
+    def place_of_solids(self) -> str:
+        """Where a page shows the solids (see `Result`): first those of wheels on tilted axes."""
+        return "first" if any(self.design.errors.tilt) else "after"
+
+    @property
     def references(self) -> tuple[Drawing, ...]:
         """The assembled pair, beside the cutting paths."""
         return (self.drawing,)

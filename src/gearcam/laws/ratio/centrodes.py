@@ -13,7 +13,7 @@ from typing import Final, TypeVar
 from gearcam.base.adjustments import Adjustment
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import beyond_limit
-from gearcam.base.quantities import ANGLE, COUNT, NUMBER, Solve, param
+from gearcam.base.quantities import ANGLE, COUNT, NUMBER, WHEELS, Solve, param
 from gearcam.base.rules import Breach, exactly_one
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import TYPED, LawEntry
@@ -128,7 +128,9 @@ class Lobed:
     eccentricity: float = param(
         NUMBER, ge=0, lt=1, constant_at=0, doc="amplitude of the radius over its mean"
     )
-    lobes: tuple[int, int] | None = param(COUNT, default=None, ge=1, le=100, doc=LOBES)
+    lobes: tuple[int, int] | None = param(
+        COUNT, default=None, ge=1, le=100, order=WHEELS, doc=LOBES
+    )
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.

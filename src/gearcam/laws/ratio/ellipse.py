@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Final
 
-from gearcam.base.quantities import COUNT, NUMBER, param
+from gearcam.base.quantities import COUNT, NUMBER, WHEELS, param
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.ratio.base import RatioLaw, make_law
@@ -37,7 +37,9 @@ class Ellipse:
     eccentricity: float = param(
         NUMBER, ge=0, lt=1, constant_at=0, doc="eccentricity of the ellipse"
     )
-    lobes: tuple[int, int] | None = param(COUNT, default=None, ge=1, le=100, doc=LOBES)
+    lobes: tuple[int, int] | None = param(
+        COUNT, default=None, ge=1, le=100, order=WHEELS, doc=LOBES
+    )
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.
