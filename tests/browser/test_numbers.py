@@ -47,6 +47,8 @@ def chart(unit: str, factor: float, high: float) -> dict[str, Any]:
         "y": f"acceleration, {unit}", "own": "mm/s2", "factor": factor, "range": [0.0, high],
         "ends": [[0, 2], [0.0, high]], "lines": [line],
         "limits": [{"label": "most", "value": high}],
+        # a unit of the axis is less of a number where the axis has smaller units
+        "handles": [{"x": 1.0, "y": high, "keys": {"a": [2.0, 3.0 / factor]}}],
     }  # fmt: skip
 
 

@@ -85,7 +85,7 @@ def _needed(text: str, key: str, value: float, file: str) -> Collection[str] | N
         return {"changes": values}
 
     try:
-        reply = _first(text, {key: value}, key, made, file)
+        reply = _first(text, {key: value}, [key], made, file)
     except Exception:  # of a value that nobody asked for: it is told once somebody does
         return None
     return None if "error" in reply else reply["changes"].keys() - {key}
