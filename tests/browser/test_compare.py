@@ -61,7 +61,7 @@ def test_a_variant_has_one_colour_in_header_charts_and_picture(browser: Chrome, 
     open_page(browser, path, WIDE)
     wanted = [(f"line-{k % 6 + 1}", k >= 6) for k in range(MANY)]
     assert looks(browser, "header") == wanted
-    figures = browser.find_elements(By.CSS_SELECTOR, "#charts > figure")
+    figures = browser.find_elements(By.CSS_SELECTOR, "#charts > figure, #further > figure")
     for number in range(len(figures)):
         assert looks(browser, f"#charts > figure:nth-of-type({number + 1})") == wanted
     inks = browser.execute_script(INKS)

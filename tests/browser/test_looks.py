@@ -112,14 +112,18 @@ def test_the_page_leads_with_what_decides_and_the_rest_is_folded(
     titles = {chart["name"]: chart["title"] for chart in document["charts"]}
     heads = browser.find_elements(By.CSS_SELECTOR, "h1, h2, h3, summary")
     seen = [one.text for one in heads if one.is_displayed() and one.tag_name != "summary"]
-    decides = [document["title"], "Parts in motion", "Findings", "Charts"]
+    decides = [document["title"], "Parts in motion", "Main numbers", "Findings"]
     decides += [titles[one] for one in leading]
     assert seen == [*decides, "Facts", "Accuracy", "Files"]
     folded = browser.find_elements(By.CSS_SELECTOR, "main details")
     assert not any(one.get_attribute("open") for one in folded)
-    wide, *pair = (one.rect for one in browser.find_elements(By.CSS_SELECTOR, "#charts > figure"))
-    assert pair[0]["y"] == pair[1]["y"] > wide["y"]
-    assert pair[0]["x"] + pair[0]["width"] < pair[1]["x"]
+    # numbers, picture and charts are side by side, and all three charts in the window
+    charts = [one.rect for one in browser.find_elements(By.CSS_SELECTOR, "#charts > figure")]
+    assert len({one["x"] for one in charts}) == 1
+    assert charts[-1]["y"] + charts[-1]["height"] < 1000
+    numbers, parts = (browser.find_element(By.ID, one).rect for one in ("main", "parts"))
+    assert numbers["x"] + numbers["width"] < parts["x"]
+    assert parts["x"] + parts["width"] < charts[0]["x"]
     browser.find_element(By.CSS_SELECTOR, "nav [href='#charts']").click()
     settle(browser)
     assert not any(one.get_attribute("open") for one in folded)
@@ -137,13 +141,13 @@ def test_charts_of_studies_that_a_design_asks_for_are_in_sight(
     charts = open_page(browser, path)["charts"]
     studied = [one["title"] for one in charts if one["name"].startswith("mesh.")]
     assert studied
-    figures = browser.find_elements(By.CSS_SELECTOR, "#charts > figure")
+    figures = browser.find_elements(By.CSS_SELECTOR, "#charts > figure, #further > figure")
     titles = [one.find_element(By.TAG_NAME, "h3").text for one in figures]
     assert titles == [*(one["title"] for one in charts[:3]), *studied]
     for figure in figures:
         browser.execute_script("arguments[0].scrollIntoView()", figure)
         until(lambda figure=figure: figure.find_elements(By.TAG_NAME, "canvas"))
-    folded = browser.find_element(By.CSS_SELECTOR, "#charts details")
+    folded = browser.find_element(By.CSS_SELECTOR, "#further details")
     assert len(folded.find_elements(By.TAG_NAME, "figure")) == len(charts) - len(titles)
     assert folded.text == f"{len(charts) - len(titles)} more charts"
     assert complaints(browser) == []
@@ -157,7 +161,7 @@ def test_a_page_without_moving_parts_shows_its_charts(
     still = source.with_name("still.html")
     still.write_bytes(page(data | {"scene": None}))
     charts = open_page(browser, still)["charts"]
-    figures = browser.find_elements(By.CSS_SELECTOR, "#charts > figure")
+    figures = browser.find_elements(By.CSS_SELECTOR, "#charts > figure, #further > figure")
     assert len(figures) == 3
     for figure in figures:
         browser.execute_script("arguments[0].scrollIntoView()", figure)

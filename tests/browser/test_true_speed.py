@@ -35,7 +35,12 @@ return places;
 """Plays so many frames, each 50 ms after the one before, and returns the places."""
 
 CYCLE = 12.0
-"""Time of a turn or travel in the picture, s."""
+"""Time of a turn or travel in the picture where the machine has no speed, s; else about that."""
+
+SHARE = "return Number(document.getElementById('speed').value)"
+"""How fast the picture is, as a share of the true speed."""
+
+SHARES = "return [...document.getElementById('speed').options].map((one) => one.value)"
 
 MACHINES: dict[str, tuple[str, dict[str, Any]]] = {
     "a turn": ("nail_machine_flywheel", {"motor.flywheel_kg_m2": 0}),
@@ -72,21 +77,28 @@ def test_parts_play_at_the_speed_of_the_study(name: str, browser: Chrome, tmp_pa
     study = opened(browser, tmp_path, *MACHINES[name])
     time, angle = study.columns["t_s"], study.columns["phi1_deg"]
     lasts = time[-1] - time[0]
-    seconds, places = played(browser, 290)
-    true = np.interp(time[0] + (seconds * lasts / CYCLE) % lasts, time, angle)
-    assert seconds[-1] > CYCLE  # the first of another turn, or of the travel once more
-    inside = np.abs(seconds - CYCLE) > 1e-9  # its end is also the beginning
+    share = browser.execute_script(SHARE)
+    assert 0.6 < lasts / share / CYCLE < 1.6  # the nearest of 1, 1/2, 1/5, 1/10 and so on
+    cycle = lasts / share
+    seconds, places = played(browser, 450)
+    true = np.interp(time[0] + (seconds * share) % lasts, time, angle)
+    assert seconds[-1] > cycle  # the first of another turn, or of the travel once more
+    inside = np.abs(seconds - cycle) > 1e-9  # its end is also the beginning
     assert places[inside] == pytest.approx(true[inside], abs=1e-3 * angle[-1])
-    even = (seconds * angle[-1] / CYCLE) % angle[-1]
-    assert np.abs(even - true)[seconds < CYCLE].max() > 0.005 * angle[-1]
+    even = (seconds * angle[-1] / cycle) % angle[-1]
+    assert np.abs(even - true)[seconds < cycle].max() > 0.005 * angle[-1]
     told = browser.find_element(By.ID, "factor").text
-    factor = re.fullmatch("1 s of the picture is (.*) s", told)
+    factor = re.fullmatch("of true speed: (.*) of (.*) rpm", told)
     assert factor
-    assert float(factor[1]) == pytest.approx(lasts / CYCLE, rel=5e-3)
-    browser.find_element(By.CSS_SELECTOR, "#speed [value='2']").click()
+    rpm = angle[-1] / 360.0 / lasts * 60.0
+    assert float(factor[2]) == pytest.approx(rpm, rel=1e-3)
+    assert float(factor[1]) == pytest.approx(share * rpm, rel=1e-3)
+    shares = [float(one) for one in browser.execute_script(SHARES)]
+    slower = shares[shares.index(share) + 1]
+    browser.find_element(By.CSS_SELECTOR, f"#speed [value='{slower}']").click()
     assert browser.find_element(By.ID, "factor").text != told
     seconds, places = played(browser, 100)
-    true = np.interp(time[0] + 2.0 * seconds * lasts / CYCLE, time, angle)
+    true = np.interp(time[0] + seconds * slower, time, angle)
     assert places == pytest.approx(true, abs=1e-3 * angle[-1])
     assert complaints(browser) == []
 
@@ -96,7 +108,9 @@ def test_the_reader_can_have_it_even(browser: Chrome, tmp_path: Path) -> None:
     browser.find_element(By.ID, "true").click()
     assert not browser.find_element(By.ID, "factor").text
     seconds, places = played(browser, 60)
-    assert places == pytest.approx(360.0 * seconds / CYCLE, abs=1e-6)
+    cycle = float(seconds[-1] * 360.0 / places[-1])
+    assert 0.6 < cycle / CYCLE < 1.6
+    assert places == pytest.approx(360.0 * seconds / cycle, abs=1e-6)
 
 
 @pytest.mark.parametrize("run", [{"output.studies": []}, {"dynamics.run": "turns"}])
@@ -108,6 +122,15 @@ def test_without_a_time_of_the_cycle_there_is_no_choice(
     motor = {"motor": {"type": "constant", "torque_nm": 500}}
     opened(browser, tmp_path, name, {**changes, **run, **motor})
     assert not browser.find_element(By.ID, "pace").is_displayed()
+    told = browser.find_element(By.ID, "factor").text
+    factor = re.fullmatch("of true speed: (.*) of 180 rpm", told)  # the mean one of its drive
+    assert factor
+    seconds, places = played(browser, 60)
+    assert places == pytest.approx(6.0 * float(factor[1]) * seconds, abs=1e-6)
+
+
+def test_without_a_speed_a_turn_takes_twelve_seconds(browser: Chrome, tmp_path: Path) -> None:
+    opened(browser, tmp_path, "ellipse", {})
     assert not browser.find_element(By.ID, "factor").text
     seconds, places = played(browser, 60)
     assert places == pytest.approx(360.0 * seconds / CYCLE, abs=1e-6)

@@ -76,6 +76,9 @@ _ERRORS: Final = "accuracy."
 _LEAVES: Final = (("min", "max"), ("least", "mean"))
 """Keys of mappings that are single values."""
 
+_MAIN: Final = 12
+"""Number of quantities that are shown first."""
+
 _ROUNDING: Final = 1e-9
 """Difference from a limit, as a share of it, that is rounding."""
 
@@ -331,6 +334,13 @@ class Facts(Mapping[str, Any]):
         """Yield the quantities of the headline, then the others that are always shown."""
         yield from map(self.quantity, self._headline)
         yield from (one for one in self.shown() if one.name not in self._headline)
+
+    @cached_property
+    def main(self) -> tuple[NamedFact, ...]:
+        """A dozen of the quantities that are always shown: those with limits before others."""
+        rows = [one for one in self.shown() if one.text and one.name not in self._headline]
+        chosen = sorted(rows, key=lambda one: not one.limit)[:_MAIN]
+        return tuple(one for one in rows if one in chosen)
 
     def quantity(self, name: str) -> NamedFact:
         """Return the quantity with a dotted `name`, or that repeats a key of this name."""

@@ -14,8 +14,10 @@ function paper(on) {
 
 // All charts of a document. They are drawn once in sight, a few per frame.
 class Charts {
-  constructor(home, page) {
+  // On a page of charts all are in sight, and there are no `further` ones.
+  constructor(home, page, further = null) {
     this.home = home;
+    this.further = further;
     this.page = page;
     this.views = [];
     this.next = null;
@@ -31,17 +33,20 @@ class Charts {
 
   rebuild(charts) {
     this.sight.disconnect();
-    this.home.querySelectorAll("figure").forEach((figure) => figure.remove());
-    const more = this.home.querySelector("details"); // on a page of charts none is folded
+    for (const { figure } of this.views) figure.remove();
+    const { home, further } = this;
+    const more = further?.querySelector("details");
     // a design has asked for the charts of studies, whose names are study.chart
-    const folded = (chart, k) => more && k >= LEADING && !chart.name.includes(".");
-    const place = (...one) => (folded(...one) ? more.querySelector("div") : this.home);
+    const folded = (chart) => !chart.name.includes(".");
+    const place = (chart, k) =>
+      further === null || k < LEADING ? home : folded(chart) ? more.querySelector("div") : further;
     this.views = charts.map((chart, k) => new ChartView(chart, place(chart, k), this.page));
     if (more) {
-      const count = charts.filter(folded).length;
+      const count = charts.slice(LEADING).filter(folded).length;
+      further.hidden = charts.length <= LEADING;
       more.hidden = !count;
       more.querySelector("summary").textContent = `${count} more ${count === 1 ? "chart" : "charts"}`;
-      this.home.append(more);
+      further.append(more);
     }
     for (const view of this.views) this.sight.observe(view.figure);
   }

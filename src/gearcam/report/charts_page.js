@@ -5,7 +5,7 @@ const page = {
   colours: palette(),
   get title() { return this.shown.title; },
 };
-const charts = new Charts(document.getElementById("charts"), page);
+const charts = new Charts(document.getElementById("charts"), page, document.getElementById("further"));
 
 function repaint() {
   page.colours = palette();

@@ -179,6 +179,14 @@
     addButtons();
   }
 
+  // The numbers that the address tells are tried.
+  function addressed() {
+    const asked = Object.entries(window.gearcam.address?.numbers() ?? {})
+      .filter(([key, value]) => key in values && Number.isFinite(value));
+    for (const [key, value] of asked) set(key, value);
+    if (asked.length) ask(asked.map(([key]) => key), true);
+  }
+
   // Show a number at its slider and in its field; it is pending until it is saved.
   function set(key, value) {
     pending[key] = value;
@@ -191,6 +199,7 @@
       row.place.classList.toggle("changed", key in pending);
     }
     enable();
+    window.gearcam.page?.changed();
   }
 
   function enable() {
@@ -416,10 +425,12 @@
   window.gearcam.solids.from(solids);
   if (tool) {
     window.gearcam.page.numbers = numbers;
-    window.gearcam.page.seen.marked = (_, pixel) => tool.marks(pixel);
-    window.gearcam.parts.tool = tool;
+    window.gearcam.page.unsaved = () => pending;
+    window.gearcam.page.seen.marked.push((_, pixel) => tool.marks(pixel));
+    window.gearcam.parts.tool = window.gearcam.page.tool = tool;
   }
   offer(live.keys);
+  addressed();
   addButtons();
   tell(live.error, Boolean(live.error));
   listen();

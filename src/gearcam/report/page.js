@@ -1,6 +1,8 @@
 // The page: its controls, and the place of the driver that parts and charts show.
 
 const CYCLE = 12; // seconds of a cycle at speed 1
+const EVEN = [0.05, 0.2, 0.5, 1, 2]; // speeds where the machine's is not known
+const SHARES = [1, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0005, 0.0002, 0.0001];
 const LEAP = 20; // steps of the driver for Page Up and Page Down
 const STRIDES = 36; // steps in a cycle with reduced motion
 
@@ -29,6 +31,7 @@ const page = {
   playing: false,
   ghost: null, // another document that is drawn beneath this one
   numbers: null, // those of the design file in the live view: `at`, `has`, `move`
+  changed() {}, // is told when what is seen has changed
   forth: 1, // -1 on the way back of an open pair
   get scene() { return this.shown.scene; },
   get title() { return this.shown.title; },
@@ -38,8 +41,11 @@ const page = {
   key,
 };
 
-const parts = new Parts(element("parts"), redraw, draw);
-const charts = new Charts(element("charts"), page);
+const parts = new Parts(element("parts"), moved, draw);
+const charts = new Charts(element("charts"), page, element("further"));
+const measuring = new MeasureTool(page, parts, element("measures"), redraw);
+page.seen.marked = [(poses, pixel) => measuring.marks(poses, pixel)];
+page.tool = null; // of the picture, where nothing is measured
 
 // --- places --------------------------------------------------------------------------------------
 
@@ -48,6 +54,7 @@ function go(place) {
   const { places } = page.scene;
   page.place = Math.min(places.at(-1), Math.max(places[0], Number(place)));
   page.cycles = 0;
+  page.changed();
   redraw();
 }
 
@@ -84,6 +91,12 @@ function told() {
   return words.join(", ");
 }
 
+// The view was moved.
+function moved() {
+  redraw();
+  page.changed();
+}
+
 let waiting = null;
 
 function redraw() {
@@ -106,6 +119,7 @@ function draw() {
   element("told").textContent = words;
   element("mesh").setAttribute("aria-pressed", parts.following);
   element("parts").classList.toggle("near", !parts.fitted);
+  measuring.tell();
 }
 
 // --- playing -------------------------------------------------------------------------------------
@@ -119,6 +133,7 @@ function play(on) {
     return;
   }
   page.playing = on;
+  if (!on) page.changed();
   element("told").setAttribute("aria-live", on ? "off" : "polite");
   name();
   if (on) requestAnimationFrame((start) => tick(start, start));
@@ -133,7 +148,7 @@ function name() {
 function tick(now, before) {
   if (!page.playing) return;
   const seconds = Math.min(0.1, (now - before) / 1000); // no jump after a pause of the page
-  advance((seconds * element("speed").value) / CYCLE);
+  advance(seconds / lasting().shown);
   draw();
   requestAnimationFrame((next) => tick(next, now));
 }
@@ -159,11 +174,42 @@ function advance(share) {
   page.place = between(places, spotOf(hands, now));
 }
 
-// How much slower or faster than the machine the parts play; empty where this is not told.
+// Seconds that the whole motion lasts in the picture, and in the machine, or nothing.
+const lasting = () => {
+  const { times, places, rpm } = page.scene;
+  const turns = (places.at(-1) - places[0]) / 360;
+  const machine = times?.at(-1) ?? (rpm ? (60 * turns) / rpm : undefined);
+  return { machine, shown: (machine ?? CYCLE) / Number(element("speed").value) };
+};
+
+// The speeds to choose from: shares of the machine's, or of an even one where it has none.
+function speeds() {
+  const { machine } = lasting();
+  const shares = machine ? SHARES : EVEN;
+  const choice = element("speed");
+  if (choice.options.length === shares.length) return;
+  choice.replaceChildren();
+  for (const share of shares) {
+    const text = share < 1 ? `1/${Math.round(1 / share)}` : String(share);
+    add(choice, "option", { value: share }, text);
+  }
+  // about a cycle in twelve seconds
+  const wanted = machine ? machine / CYCLE : 1;
+  const far = (share) => Math.abs(Math.log(share / wanted));
+  choice.value = shares.reduce((best, share) => (far(share) < far(best) ? share : best));
+}
+
+// How fast the parts play, where the machine's speed is known: in turns a minute, or as a share.
 function factor() {
-  const lasts = clock() === page.scene.times ? page.scene.times.at(-1) : 0;
-  const seconds = Number(((lasts * element("speed").value) / CYCLE).toPrecision(3));
-  element("factor").textContent = lasts ? `1 s of the picture is ${seconds} s` : "";
+  const { scene } = page;
+  const { machine } = lasting();
+  const [, unit] = scene.driver.split(", ");
+  const turns = unit === "deg" ? (scene.places.at(-1) - scene.places[0]) / 360 : 0;
+  const rpm = (60 * turns) / machine;
+  const share = Number(element("speed").value);
+  const even = scene.times && clock() !== scene.times;
+  element("factor").textContent = !machine || even ? ""
+    : rpm ? `of true speed: ${brief(rpm * share)} of ${brief(rpm)} rpm` : "of true speed";
 }
 
 // --- controls ------------------------------------------------------------------------------------
@@ -176,6 +222,7 @@ const KEYS = {
   " ": () => play(!page.playing),
   "+": () => parts.zoom(1.25), "=": () => parts.zoom(1.25), "-": () => parts.zoom(0.8),
   0: () => fit(),
+  Escape: () => measuring.choose(measuring.kind),
 };
 
 function key(event) {
@@ -295,6 +342,21 @@ function listen() {
   });
   element("nearer").addEventListener("click", () => parts.zoom(1.25));
   element("farther").addEventListener("click", () => parts.zoom(0.8));
+  element("poses").addEventListener("click", () => {
+    save(`${page.title}_poses.svg`, posesSvgOf(page.scene, page.seen), "image/svg+xml");
+  });
+  element("measure").addEventListener("change", (event) => measure(event.target.value));
+  document.addEventListener("click", (event) => {
+    const told = event.target.closest(".goes");
+    if (told) visit(told.textContent);
+  });
+  document.addEventListener("keydown", (event) => {
+    if (event.key === "Enter" && event.target.matches(".goes")) visit(event.target.textContent);
+  });
+  element("parts").addEventListener("pointermove", ({ offsetX, offsetY, buttons }) => {
+    if (!buttons) reflect(parts.spotOf({ offsetX, offsetY }));
+  });
+  element("parts").addEventListener("pointerleave", () => reflect(null));
   element("side").addEventListener("change", () => {
     side();
     redraw();
@@ -311,6 +373,12 @@ function listen() {
   });
   still.addEventListener("change", name);
   dark.addEventListener("change", repaint);
+  for (const [name, on] of [["pointerover", true], ["pointerout", false]]) {
+    document.addEventListener(name, ({ target }) => {
+      const row = target.closest?.(ABOUT);
+      if (row) light(on ? bodiesIn(saidIn(row), page.scene) : []);
+    });
+  }
   const variantAt = ({ target }) => target.closest?.("[data-variant]")?.dataset.variant;
   for (const name of ["pointerover", "focusin"]) {
     document.addEventListener(name, (event) => {
@@ -326,6 +394,71 @@ function listen() {
   window.addEventListener("hashchange", unfold);
   window.addEventListener("beforeprint", () => print(true));
   window.addEventListener("afterprint", () => print(false));
+}
+
+// What is told of parts: findings, main numbers, facts.
+const ABOUT = "#findings li, #main dl > div, #facts tbody tr";
+
+// The words of a row, without those of a whole message, which may name other parts.
+const saidIn = (row) => (row.querySelector(".what") ?? row).textContent;
+
+// Let bodies stand out in the picture.
+function light(bodies) {
+  if (String(page.seen.lit ?? []) === String(bodies)) return;
+  page.seen.lit = bodies;
+  redraw();
+}
+
+// Let what is told of the body at a point stand out.
+let reflected = -1;
+
+function reflect(spot) {
+  const poses = posesOf(page.scene, page.place, page.cycles);
+  const body = spot ? bodyAt(spot, page.scene, poses) : -1;
+  if (body === reflected) return;
+  reflected = body;
+  for (const row of document.querySelectorAll(ABOUT)) {
+    row.classList.toggle("lit", body >= 0 && bodiesIn(saidIn(row), page.scene).includes(body));
+  }
+}
+
+// Go to the place, or to the tooth, that a text names, near enough to see it.
+function visit(text) {
+  const { scene } = page;
+  const tooth = toothIn(text, scene);
+  const place = placeIn(text, scene) ?? tooth?.place;
+  if (place !== null && place !== undefined) go(place);
+  if (tooth) {
+    const pose = posesOf(scene, page.place)[tooth.body];
+    const { metal, teeth } = scene.bodies[tooth.body];
+    const points = toothOf(metal[0], teeth[tooth.tooth - 1]);
+    const middle = 2 * Math.floor(0.25 * points.length);
+    parts.fit();
+    Object.assign(parts.view, placed(pose, points.slice(middle, middle + 2)));
+    parts.view.scale *= closer(scene);
+    parts.fitted = false;
+  } else if (meshAt(scene, page.place) && /phi1/.test(text)) parts.follow();
+  page.changed();
+  redraw();
+  element("parts").scrollIntoView({ block: "nearest" });
+}
+
+// Mark what leads somewhere.
+function enliven() {
+  for (const one of document.querySelectorAll(".where")) {
+    const text = one.textContent;
+    const leads = placeIn(text, page.scene) !== null || toothIn(text, page.scene);
+    one.classList.toggle("goes", Boolean(leads));
+    if (!leads) continue;
+    one.setAttribute("role", "link");
+    one.tabIndex = 0;
+  }
+}
+
+function measure(kind) {
+  measuring.choose(kind);
+  parts.tool = kind ? measuring : page.tool;
+  element("parts").classList.toggle("measuring", Boolean(kind));
 }
 
 // Have one variant stand out from the others, or none.
@@ -382,6 +515,9 @@ function present(whole) {
     element("pace").hidden = !scene.times;
   }
   legend();
+  enliven();
+  measuring.keep();
+  speeds();
   factor();
   element("place").max = scene.places.length - 1;
   page.place = Math.min(scene.places.at(-1), Math.max(scene.places[0], page.place));
@@ -401,6 +537,7 @@ window.gearcam = {
   show,
   page,
   parts,
+  measuring,
   charts,
   freeze,
   redraw,

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import base64
 import json
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from pathlib import Path
@@ -25,15 +26,25 @@ if TYPE_CHECKING:
     from gearcam.base.facts import Facts
     from gearcam.base.findings import Finding
     from gearcam.pictures.charts import Chart
+    from gearcam.pictures.scenes import Scene
     from gearcam.results.result import Result
 
 PAGE: Final = "report.html"
 """File name."""
 
-BLOCKS: Final = ("verdict", "remedies", "findings", "pictures", "files", "facts", "accuracy")
+BLOCKS: Final = (
+    "verdict",
+    "remedies",
+    "main",
+    "findings",
+    "pictures",
+    "files",
+    "facts",
+    "accuracy",
+)
 """Sections of the page that are written from facts, each by a template."""
 
-DRAFTED: Final = ("verdict", "remedies", "findings", "facts")
+DRAFTED: Final = ("verdict", "remedies", "main", "findings", "facts")
 """Blocks that are updated while a slider is dragged."""
 
 LEADING: Final = 3
@@ -54,7 +65,16 @@ _CHARTS: Final = (
 )
 """Parts of the script that draw charts, each after those that it needs."""
 
-SCRIPTS: Final = ("scene.js", *_CHARTS, "blocks.js", "solids.js", "page.js")
+SCRIPTS: Final = (
+    "scene.js",
+    *_CHARTS,
+    "blocks.js",
+    "solids.js",
+    "places.js",
+    "measure.js",
+    "page.js",
+    "address.js",
+)
 """Parts of the script of a page with moving parts."""
 
 STILL: Final = (*_CHARTS, "blocks.js", "solids.js", "charts_page.js")
@@ -201,10 +221,18 @@ def document(
         "title": result.design.name,
         "kind": result.design.kind,
         "solids": result.place_of_solids,
-        "scene": scene_data(scene) if scene else None,
+        "scene": _shown(result, scene) if scene else None,
         "charts": [chart_data(name, result.chart(name), driver) for name in result.charts],
         "blocks": blocks(result, measured, seek=seek),
     }
+
+
+def _shown(result: Result, scene: Scene) -> dict[str, Any]:
+    """Return the data of a scene with the speed of its driver, rpm; None where it has none."""
+    drive = getattr(result.design, "drive", None)
+    speed = getattr(drive[0] if isinstance(drive, tuple) and drive else drive, "speed", None)
+    turns = scene.driver.endswith(", deg") and speed
+    return scene_data(scene) | {"rpm": speed * 30.0 / math.pi if turns else None}
 
 
 def draft(result: Result) -> dict[str, Any]:
@@ -227,7 +255,7 @@ def draft(result: Result) -> dict[str, Any]:
     return {
         "title": result.design.name,
         "kind": result.design.kind,
-        "scene": scene_data(scene) if scene else None,
+        "scene": _shown(result, scene) if scene else None,
         "leading": [chart_data(name, one, driver) for name, one in result.leading(LEADING)],
         "blocks": _rendered(
             DRAFTED,

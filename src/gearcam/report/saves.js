@@ -1,5 +1,8 @@
 // Saving: the drawing as SVG, and how a file is handed over.
 
+const POSES = 12; // of a sheet of poses
+const ACROSS = 4; // of them in a row
+const SHEET = 277; // width of the sheet, mm: A4 across
 const PIXELS = 960; // nominal width of a saved drawing, for the widths of its lines
 
 const digits = (value) => String(Number(value.toFixed(4)));
@@ -37,6 +40,41 @@ function svgOf(scene, place, cycles, seen) {
     "</svg>",
     "",
   ].join("\n");
+}
+
+// A sheet of poses: the whole drawing at places evenly apart, each with its place.
+function posesSvgOf(scene, seen) {
+  const { places, closed, driver } = scene;
+  const [left, bottom, right, top] = scene.box;
+  const [wide, tall] = [1.08 * (right - left), 1.08 * (top - bottom)];
+  const pixel = (right - left) / (PIXELS / ACROSS);
+  const line = 1.6 * NAMES * pixel;
+  const rows = Math.ceil(POSES / ACROSS);
+  const size = { width: ACROSS * wide, height: rows * (tall + line) };
+  const shown = { width: SHEET, height: (SHEET * size.height) / size.width };
+  const sheet = {
+    xmlns: "http://www.w3.org/2000/svg", width: `${digits(shown.width)}mm`,
+    height: `${digits(shown.height)}mm`, viewBox: `0 0 ${digits(size.width)} ${digits(size.height)}`,
+  };
+  const colours = palette(true);
+  const [name, unit = ""] = driver.split(", ");
+  const count = closed ? POSES : POSES - 1; // a cycle ends where it begins
+  const pictures = Array.from({ length: POSES }, (_, k) => {
+    const place = places[0] + (k / count) * (places.at(-1) - places[0]);
+    const marks = [...marksOf(scene, place, 0, { ...seen, marked: [] }, pixel)];
+    const corner = { x: (k % ACROSS) * wide, y: Math.floor(k / ACROSS) * (tall + line) };
+    const [x, y] = [corner.x - left + 0.04 * wide, corner.y + line + top + 0.04 * tall];
+    const drawn = marks.filter((mark) => mark.chains.length);
+    const label = { x: corner.x + 0.04 * wide, y: corner.y + line, "font-size": NAMES * pixel };
+    return [
+      `<text${attributes({ ...label, "font-family": "sans-serif", fill: colours.text })}>`,
+      `${escaped(`${name} = ${digits(place)} ${unit}`)}</text>`,
+      `<g transform="translate(${digits(x)} ${digits(y)}) scale(1 -1)" stroke-linejoin="round"`,
+      ` fill-rule="evenodd">${drawn.map((mark) => elementOf(mark, pixel, colours)).join("")}</g>`,
+    ].join("");
+  });
+  const ground = `<rect${attributes({ ...size, fill: colours.ground })}/>`;
+  return [`<svg${attributes(sheet)}>`, ground, ...pictures, "</svg>", ""].join("\n");
 }
 
 function elementOf({ chains, closed, pose, fill, ink, width = 1.2, dash }, pixel, colours) {

@@ -204,7 +204,12 @@ function* marksOf(scene, place, cycles, seen, pixel, edge = Infinity) {
   const pitch = seen.pitch && pitchAt(scene, place);
   if (pitch) yield dot(pitch, 4 * pixel, "pitch");
   if (seen.names) yield* nameMarks(scene, poses, pixel, edge);
-  if (seen.marked) yield* seen.marked(poses, pixel);
+  for (const k of seen.lit ?? []) {
+    const { metal, lines } = scene.bodies[k] ?? { metal: [], lines: [] };
+    const chains = [...metal, ...lines.filter((one) => !one.dashed && one.closed).map((one) => one.points)];
+    yield { chains, closed: true, ink: "accent", width: 3, pose: poses[k] };
+  }
+  for (const marks of seen.marked ?? []) yield* marks(poses, pixel);
 }
 
 // Another design at the same place, as outlines beneath this one.
