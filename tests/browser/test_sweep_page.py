@@ -448,3 +448,16 @@ def test_numbers_at_axes_are_round_and_do_not_touch(browser: Chrome, sought: Pat
         for (left, wide, text), (right, width, _) in pairwise(found):
             assert left + 0.5 * wide < right - 0.5 * width
             assert len(text) <= 4
+
+
+def test_values_are_in_the_unit_of_their_axis(browser: Chrome, tmp_path: Path) -> None:
+    made = [
+        Built(number=k, values={"k": k}, facts={"a_mm_s2": 1e5 * k, "b": float(-k)})
+        for k in range(1, 4)
+    ]
+    file = tmp_path / "units.html"
+    file.write_bytes(page(BASE, made, [], {"a_mm_s2": 1.0, "b": 1.0}))
+    open_page(browser, file)
+    assert [one.text for one in browser.find_elements(By.CSS_SELECTOR, "#front th")][1] == "a, m/s2"
+    cells = browser.find_elements(By.CSS_SELECTOR, "#front td:nth-child(2)")
+    assert [one.text for one in cells] == ["100", "200", "300"]

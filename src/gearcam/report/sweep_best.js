@@ -48,6 +48,13 @@ function namesOf(best, wanted) {
   return found;
 }
 
+/** Return the values of some variants with the same number of decimals. */
+function cellsOf(one, list) {
+  const values = list.map((k) => one.values[k]);
+  const plain = one.words.length || values.every(Number.isInteger);
+  return plain ? list.map((k) => cellOf(one, k)) : lined(values.map(clean), one.unit);
+}
+
 const kindOf = (one) => one.words.length ? "" : "number";
 const leastOf = (list, of) => list.reduce((least, k) => Math.min(least, of(k)), Infinity);
 
@@ -59,11 +66,12 @@ function findFront() {
   const pictured = front.some((k) => sweep.pictures[k]);
   const bests = new Map(wanted.map(([one, sign]) =>
     [one, sign * leastOf(front, (k) => sign * one.values[k])]));
-  const row = (k) => made("tr", {
+  const cells = new Map(heads.map((one) => [one, cellsOf(one, front)]));
+  const row = (k, number) => made("tr", {
     tabIndex: 0, onclick: () => choose(k),
     onkeydown: (event) => { if (event.key === "Enter" && event.target === event.currentTarget) choose(k); },
   }, made("td", { textContent: sweep.numbers[k] }), ...(pictured ? [made("td", {}, ...pictureOf(k))] : []),
-  ...heads.map((one) => made("td", { textContent: cellOf(one, k),
+  ...heads.map((one) => made("td", { textContent: cells.get(one)[number],
     className: `${kindOf(one)} ${bests.get(one) === one.values[k] ? "most" : ""}` })),
   made("td", { textContent: names.get(k) ?? "" }), made("td", {}, linkTo(k)));
   const more = front.length > MOST_ROWS ? `, the first ${MOST_ROWS} are listed` : "";
