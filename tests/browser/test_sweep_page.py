@@ -439,15 +439,20 @@ def test_labels_are_words_with_units_and_numbers_have_five_digits(
 def test_numbers_at_axes_are_round_and_do_not_touch(browser: Chrome, sought: Path) -> None:
     for size in ((1500, 950), PHONE):
         open_page(browser, sought, size)
-        found = browser.execute_script(
-            "const { x, across } = places(); const pen = byId('points').getContext('2d');"
-            "return ticks(x, byId('points').clientWidth < 500 ? 4 : 6).map(([value, text]) =>"
-            "  [across(value), pen.measureText(text).width, text])"
+        across, up = browser.execute_script(
+            "const { x, y, across, up } = places();"
+            "const pen = byId('points').getContext('2d');"
+            "const few = byId('points').clientWidth < 500 ? 4 : 6;"
+            "const told = (one, place, most) => ticks(one, most).map(([value, text]) =>"
+            "  [place(value), pen.measureText(text).width, text]);"
+            "return [told(x, across, few), told(y, up)]"
         )
-        assert len(found) >= 3
-        for (left, wide, text), (right, width, _) in pairwise(found):
+        assert len(across) >= 3
+        assert len(up) >= 3
+        for (left, wide, _), (right, width, _) in pairwise(across):
             assert left + 0.5 * wide < right - 0.5 * width
-            assert len(text) <= 4
+        assert all(lower - 12 > upper for (lower, *_), (upper, *_) in pairwise(up))
+        assert max(len(text) for _, _, text in [*across, *up]) <= 4
 
 
 def test_values_are_in_the_unit_of_their_axis(browser: Chrome, tmp_path: Path) -> None:
