@@ -453,6 +453,8 @@ def test_numbers_at_axes_are_round_and_do_not_touch(browser: Chrome, sought: Pat
             assert left + 0.5 * wide < right - 0.5 * width
         assert all(lower - 12 > upper for (lower, *_), (upper, *_) in pairwise(up))
         assert max(len(text) for _, _, text in [*across, *up]) <= 4
+    tenths = browser.execute_script("return ticks({ low: 0.05, high: 0.75, words: [] }, 8)")
+    assert [text for _, text in tenths] == [f"0.{k}" for k in range(1, 8)]
 
 
 def test_values_are_in_the_unit_of_their_axis(browser: Chrome, tmp_path: Path) -> None:
