@@ -6,7 +6,7 @@ Canvases are printed as drawings, so that what they write is text too.
 from __future__ import annotations
 
 import base64
-from collections import defaultdict
+import ctypes
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import combinations
@@ -26,8 +26,8 @@ PAPERS: Final = {"A4": (210.0, 297.0), "Letter": (215.9, 279.4)}
 ASTRAY: Final = 20.0
 """From the next letter, points: the letters of a ligature that pdfium has not placed."""
 
-CLEAR: Final = 2.0
-"""What two words may share, points: halos of neighbouring letters do."""
+CLEAR: Final = 1.0
+"""What two words may share, points."""
 
 FINE: Final = 2.0
 """Pixels in a point, of the pictures of pages."""
@@ -128,26 +128,29 @@ def _signs(text: Any) -> list[_Sign | None]:
     """Characters with the boxes of their ink and of their place; None of spaces.
 
     The letters of a ligature, whose boxes pdfium does not place, have those of the next letter.
-    Names in pictures are written twice, the first time as a halo: they count once.
+    White letters, the halos of names in pictures, are left out.
     """
     signs: list[_Sign | None] = []
-    known = defaultdict[str, list[complex]](list)
     after: tuple[Box, Box] | None = None
     for k in reversed(range(text.count_chars())):
         sign = chr(raw.FPDFText_GetUnicode(text.raw, k))
         if sign.isspace() or sign == "\x02":  # pdfium's sign of a hyphen at the end of a line
             signs.append(None)
             continue
+        if _is_white(raw.FPDFText_GetTextObject(text.raw, k)):
+            continue
         ink, place = text.get_charbox(k), text.get_charbox(k, loose=True)
         if after and ink == place and abs(ink[1] - after[0][1]) > ASTRAY:
-            signs.append(signs[-1] and (sign, *after))
-            continue
+            ink, place = after
         after = ink, place
-        middle = 0.5 * complex(ink[0] + ink[2], ink[1] + ink[3])
-        again = any(abs(one - middle) < 1.5 for one in known[sign])
-        signs.append(None if again else (sign, ink, place))
-        known[sign].append(middle)
+        signs.append((sign, ink, place))
     return signs[::-1]
+
+
+def _is_white(letter: Any) -> bool:
+    parts = [ctypes.c_uint() for _ in range(4)]
+    raw.FPDFPageObj_GetFillColor(letter, *parts)
+    return all(one.value == 255 for one in parts[:3])
 
 
 def _beside(one: Box, other: Box) -> bool:

@@ -39,7 +39,6 @@ KINDS: Final = (
     "nail_machine_slide",
     "four_bar",
 )
-FEW: Final = "law.eccentricity=0.3,0.5"
 MANY: Final = [round(0.02 * (k + 1), 2) for k in range(12)]
 PALE: Final = 1.05 / 3.0 - 0.05
 """Luminance of what has a contrast of 3 to paper, the least that shows a shape (WCAG 2.2)."""
@@ -100,7 +99,8 @@ def _content(name: str) -> bytes:
         base = gc.load(PROFILES / "ellipse.toml")
         places = np.linspace(0.05, 0.5, 10).round(3)
         rows = [measured(base, k, {"law.eccentricity": float(e)}) for k, e in enumerate(places)]
-        return swept(base, rows, ["law.eccentricity = 0.05:0.5:0.05"], {"pair.ratio.max": -1.0})
+        goals = {"pair.ratio.max": -1.0, "mesh.contact_ratio.forward.least": -1.0}
+        return swept(base, rows, ["law.eccentricity = 0.05:0.5:0.05"], goals)
     if name == "charts":
         x = np.linspace(0.0, 6.0, 50)
         lines = (Line(label="sine", x=x, y=np.sin(x)), Line(label="cosine", x=x, y=np.cos(x)))

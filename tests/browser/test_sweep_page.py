@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -334,3 +335,136 @@ def test_a_hundred_thousand_variants_open(browser: Chrome, tmp_path: Path) -> No
     file.write_bytes(page(BASE, made, []))
     assert len(json.dumps(open_page(browser, file)["numbers"])) > 100_000
     until(lambda: "100000 of 100000 variants are kept, 10000 are drawn" in text(browser, "shown"))
+
+
+GOALS = {"pair.ratio.max": -1.0, "mesh.contact_ratio.forward.least": -1.0}
+
+
+@pytest.fixture(scope="module")
+def sought(rows: list[Built], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The page of a search for the largest ratio and the largest contact ratio."""
+    file = tmp_path_factory.mktemp("sought") / "optimize.html"
+    file.write_bytes(page(BASE, rows, [], GOALS))
+    return file
+
+
+def test_two_goals_are_the_axes_with_their_front_and_its_best_named(
+    browser: Chrome, sought: Path
+) -> None:
+    open_page(browser, sought)
+    assert not browser.get_log("browser")
+    assert [browser.find_element(By.ID, one).get_attribute("value") for one in "xy"] == [*GOALS]
+    best = front(browser)
+    assert best[0] == "9"  # the largest eccentricity has the largest ratio
+    assert len(best) > 3
+    named = browser.execute_script("return [...names].map(([k, name]) => [sweep.numbers[k], name])")
+    assert dict(named)[9] == "largest ratio i21"
+    assert {name for _, name in named} == {
+        "largest ratio i21",
+        "largest contact ratio, forward",
+        "nearest to both",
+    }
+    # the edge of what can be had: from one to the next one level and one upright stroke
+    ink = browser.execute_script(
+        "const [a, b] = front.slice(0, 2).map((k) => places().at(k));"
+        "const far = [[0.5 * (a[0] + b[0]), a[1]], [b[0], 0.5 * (a[1] + b[1])]];"
+        "const near = (x, y) => [...byId('points').getContext('2d')"
+        "  .getImageData(x - 2, y - 2, 5, 5).data].filter((_, k) => k % 4 === 3);"
+        "return far.map(([x, y]) => Math.max(...near(x, y)));"
+    )
+    assert min(ink) > 200
+
+
+def test_a_design_of_the_front_is_one_click_from_its_file(
+    browser: Chrome, sought: Path, rows: list[Built], tmp_path: Path
+) -> None:
+    open_page(browser, sought)
+    behaviour = {"behavior": "allow", "downloadPath": str(tmp_path)}
+    browser.execute_cdp_cmd("Browser.setDownloadBehavior", behaviour)
+    links = browser.find_elements(By.CSS_SELECTOR, "#front a")
+    assert len(links) == len(front(browser))
+    links[0].click()
+    saved = until(lambda: [*tmp_path.glob("*.toml")])[0]
+    assert saved.name == f"{BASE.name}_9.toml"
+    built: dict[str, Any] = gc.build(
+        until(lambda: saved.stat().st_size and gc.load(saved))
+    ).record()
+    assert {**built, "name": BASE.name} == rows[9].facts
+
+
+def test_the_best_have_pictures_to_one_scale(browser: Chrome, sought: Path) -> None:
+    open_page(browser, sought)
+    boxes = browser.execute_script(
+        "return [...document.querySelectorAll('#front svg')].map((one) => {"
+        "  const { width, height } = one.getBBox(); return [width, height]; })"
+    )
+    assert len(boxes) == len(front(browser))
+    widths = [width for width, _ in boxes]
+    assert max(widths) == pytest.approx(132, abs=2)
+    assert widths == sorted(widths, reverse=True)  # a larger eccentricity is a larger pair
+    assert widths[-1] < widths[0] - 2
+    assert len(browser.find_elements(By.CSS_SELECTOR, "#variant svg path")) >= 2
+
+
+def test_a_sweep_without_goals_shows_some_variants(opened: Chrome) -> None:
+    buttons = opened.find_elements(By.CSS_SELECTOR, "#pictured button")
+    assert len(buttons) == 10  # all that can be made
+    buttons[4].click()
+    assert opened.find_element(By.ID, "number").get_attribute("value") == "4"
+    assert buttons[4].text == "4: eccentricity 0.25"
+
+
+def test_labels_are_words_with_units_and_numbers_have_five_digits(
+    browser: Chrome, sought: Path
+) -> None:
+    open_page(browser, sought)
+    heads = [one.text for one in browser.find_elements(By.CSS_SELECTOR, "#front th")]
+    assert heads[:5] == [
+        "variant",
+        "to one scale",
+        "largest ratio i21",
+        "least contact ratio, forward",
+        "eccentricity",
+    ]
+    options = [one.text for one in Select(browser.find_element(By.ID, "y")).options]
+    assert {"largest pressure angle, deg", "thinnest tip, mm"} <= set(options)
+    assert not [one for one in options if "_" in one or re.search(r"\w\.\w", one)]
+    column = [one.text for one in browser.find_elements(By.CSS_SELECTOR, "#front td:nth-child(4)")]
+    assert {len(one) for one in column} == {6}  # 1.6543: zeros at the end are kept
+    facts = browser.find_element(By.CSS_SELECTOR, "#variant .facts").text
+    for number in re.findall(r"-?\d+\.\d+", facts):
+        assert len(number.lstrip("-0.").replace(".", "")) <= 5, number
+
+
+def test_numbers_at_axes_are_round_and_do_not_touch(browser: Chrome, sought: Path) -> None:
+    for size in ((1500, 950), PHONE):
+        open_page(browser, sought, size)
+        across, up = browser.execute_script(
+            "const { x, y, across, up } = places();"
+            "const pen = byId('points').getContext('2d');"
+            "const few = byId('points').clientWidth < 500 ? 4 : 6;"
+            "const told = (one, place, most) => ticks(one, most).map(([value, text]) =>"
+            "  [place(value), pen.measureText(text).width, text]);"
+            "return [told(x, across, few), told(y, up)]"
+        )
+        assert len(across) >= 3
+        assert len(up) >= 3
+        for (left, wide, _), (right, width, _) in pairwise(across):
+            assert left + 0.5 * wide < right - 0.5 * width
+        assert all(lower - 12 > upper for (lower, *_), (upper, *_) in pairwise(up))
+        assert max(len(text) for _, _, text in [*across, *up]) <= 4
+    tenths = browser.execute_script("return ticks({ low: 0.05, high: 0.75, words: [] }, 8)")
+    assert [text for _, text in tenths] == [f"0.{k}" for k in range(1, 8)]
+
+
+def test_values_are_in_the_unit_of_their_axis(browser: Chrome, tmp_path: Path) -> None:
+    made = [
+        Built(number=k, values={"k": k}, facts={"a_mm_s2": 1e5 * k, "b": float(-k)})
+        for k in range(1, 4)
+    ]
+    file = tmp_path / "units.html"
+    file.write_bytes(page(BASE, made, [], {"a_mm_s2": 1.0, "b": 1.0}))
+    open_page(browser, file)
+    assert [one.text for one in browser.find_elements(By.CSS_SELECTOR, "#front th")][1] == "a, m/s2"
+    cells = browser.find_elements(By.CSS_SELECTOR, "#front td:nth-child(2)")
+    assert [one.text for one in cells] == ["100", "200", "300"]

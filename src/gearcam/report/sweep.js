@@ -13,6 +13,7 @@ const made = (tag, more = {}, ...inside) => {
 function column(one) {
   const { buffer } = Uint8Array.from(atob(one.data), (sign) => sign.charCodeAt(0));
   const values = one.input ? new Float64Array(buffer) : new Float32Array(buffer);
+  if (one.factor && one.factor !== 1) values.forEach((value, k) => (values[k] = value * one.factor));
   let [low, high] = [Infinity, -Infinity];
   for (const value of values) {
     if (value < low) low = value;

@@ -39,7 +39,7 @@ function namesOf(best, wanted) {
   const least = (of) => best.reduce((a, b) => of(b) < of(a) ? b : a);
   const ends = wanted.map(([one, sign]) => {
     const value = (k) => sign * one.values[k];
-    const [low, high] = [value(least(value)), -least_of(best, (k) => -value(k))];
+    const [low, high] = [value(least(value)), -leastOf(best, (k) => -value(k))];
     name(least(value), `${sign > 0 ? "least" : "largest"} ${one.label.replace(/^(least|smallest|largest) /, "")}`);
     return (k) => high > low ? (value(k) - low) / (high - low) : 0;
   });
@@ -48,7 +48,15 @@ function namesOf(best, wanted) {
   return found;
 }
 
-const least_of = (list, of) => list.reduce((least, k) => Math.min(least, of(k)), Infinity);
+/** Return the values of some variants with the same number of decimals. */
+function cellsOf(one, list) {
+  const values = list.map((k) => one.values[k]);
+  const plain = one.words.length || values.every(Number.isInteger);
+  return plain ? list.map((k) => cellOf(one, k)) : lined(values.map(clean), one.unit);
+}
+
+const kindOf = (one) => one.words.length ? "" : "number";
+const leastOf = (list, of) => list.reduce((least, k) => Math.min(least, of(k)), Infinity);
 
 function findFront() {
   const wanted = goals();
@@ -57,20 +65,21 @@ function findFront() {
   const heads = [...wanted.map(([one]) => one), ...inputs];
   const pictured = front.some((k) => sweep.pictures[k]);
   const bests = new Map(wanted.map(([one, sign]) =>
-    [one, sign * least_of(front, (k) => sign * one.values[k])]));
-  const row = (k) => made("tr", {
+    [one, sign * leastOf(front, (k) => sign * one.values[k])]));
+  const cells = new Map(heads.map((one) => [one, cellsOf(one, front)]));
+  const row = (k, number) => made("tr", {
     tabIndex: 0, onclick: () => choose(k),
     onkeydown: (event) => { if (event.key === "Enter" && event.target === event.currentTarget) choose(k); },
   }, made("td", { textContent: sweep.numbers[k] }), ...(pictured ? [made("td", {}, ...pictureOf(k))] : []),
-  ...heads.map((one) => made("td", { textContent: cellOf(one, k),
-    className: bests.has(one) && one.values[k] === bests.get(one) ? "number most" : "number" })),
+  ...heads.map((one) => made("td", { textContent: cells.get(one)[number],
+    className: `${kindOf(one)} ${bests.get(one) === one.values[k] ? "most" : ""}` })),
   made("td", { textContent: names.get(k) ?? "" }), made("td", {}, linkTo(k)));
   const more = front.length > MOST_ROWS ? `, the first ${MOST_ROWS} are listed` : "";
   const titles = ["variant", ...(pictured ? ["to one scale"] : []), ...heads.map(titled), "", "design file"];
   byId("front").replaceChildren(...(front.length ? [
     made("p", { textContent: `${front.length} of ${inside}${more}` }),
-    made("table", {}, made("tr", {}, ...titles.map((textContent) => made("th", { textContent }))),
-      ...front.slice(0, MOST_ROWS).map(row))] : []));
+    made("table", {}, made("thead", {}, made("tr", {}, ...titles.map((textContent) =>
+      made("th", { textContent })))), made("tbody", {}, ...front.slice(0, MOST_ROWS).map(row)))] : []));
 }
 
 /** Draw the best: the edge of what can be had, if the axes are two goals, and a mark for each. */

@@ -8,7 +8,7 @@ function choose(k) {
   byId("number").value = sweep.numbers[k];
   const [name, text] = file(k);
   const table = (pairs) => made("table", {}, ...pairs.map(([one, value]) => made("tr", {},
-    made("td", { textContent: one.label, title: one.name }), made("td", { className: "number", textContent: value }),
+    made("td", { textContent: one.label, title: one.name }), made("td", { className: kindOf(one), textContent: value }),
     made("td", { textContent: one.unit }))));
   const facts = [...columns.values()].filter((one) => !one.input && !Number.isNaN(one.values[k]));
   const told = sweep.reasons[sweep.refused[k]] ? `refused, ${sweep.reasons[sweep.refused[k]]}`

@@ -19,6 +19,7 @@ from typing import Any, Final
 import numpy as np
 
 from gearcam.base.facts import Facts, text_of
+from gearcam.base.readable import scale_of
 from gearcam.designs.design import Design, path_of
 from gearcam.designs.writing import least_document, toml_text, value_text
 from gearcam.pictures.scenes import Scene
@@ -80,7 +81,8 @@ class _Column:
     def content(self, count: int) -> dict[str, Any]:
         """Return the column of a number of rows for the page.
 
-        ``words`` are the values if some are no numbers; the data are their places then.
+        ``words`` are the values if some are no numbers; the data are their places then. ``size`` is
+        the largest magnitude of the data.
         """
         self._fill(count)
         words: list[str] = []
@@ -95,6 +97,7 @@ class _Column:
         column["differs"] = bool(there.size and there.min() < there.max())
         if there.size and not column["differs"]:
             column["value"] = words[0] if words else text_of(float(there[0]))
+        column["size"] = float(np.abs(there).max(initial=0.0))
         return column | {"data": base64.b64encode(data.tobytes()).decode()}
 
     def written(self, place: int) -> str:
@@ -219,6 +222,9 @@ def page(
     words = labels(given.facts if given else Facts({}), [one["name"] for one in columns])
     for one in columns:
         one["label"], one["unit"] = words[one["name"]]
+        if one["differs"] and not one["input"] and not one["words"]:
+            scale = scale_of(one["size"], one["unit"])
+            one["unit"], one["factor"] = scale.unit, scale.factor
     first = _leading(given, set(facts)) or facts or inputs
     plane = sought if len(sought) > 1 else [*inputs[:1], *sought, *first]
     content = {

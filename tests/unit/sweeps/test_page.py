@@ -175,3 +175,11 @@ def test_goals_are_set_before() -> None:
     content = held(page(BASE, rows, [], {"b": 1.0, "c": -1.0}))
     assert content["goals"] == {"b": "1", "c": "-1"}
     assert (content["x"], content["y"]) == ("b", "c")
+
+
+def test_facts_have_units_in_which_they_are_read_at_a_glance() -> None:
+    rows = rows_of({"k": [1, 2]}, {"a_mm_s2": [1e5, 2e5], "b_mm": [3.0, 4.0]})
+    columns = held(page(BASE, rows, []))["columns"]
+    assert [columns["a_mm_s2"][key] for key in ("label", "unit", "factor")] == ["a", "m/s2", 1e-3]
+    assert columns["a_mm_s2"]["values"] == [1e5, 2e5]
+    assert [columns["b_mm"][key] for key in ("unit", "factor")] == ["mm", 1.0]
