@@ -50,12 +50,15 @@ Their settings are the keys of their table in a design file.
 >>> round(study.facts["meshing.backlash_mm"]["min"], 4)
 0.0287
 
-*Variants.* `with_` returns a changed, checked copy of a design; `record` is one row of a data
-frame. The command ``gearcam sweep`` builds thousands, ``gearcam optimize`` searches the best.
+*Variants.* `with_` returns a changed, checked copy of a design. `sweep` builds all variants, in
+several processes, and gives columns; `optimize` searches the best. The commands ``gearcam sweep``
+and ``gearcam optimize`` do the same.
 
->>> tried = [design.with_({"law.eccentricity": one}) for one in (0.1, 0.3)]
->>> [round(gc.build(one).record()["pair.ratio.max"], 3) for one in tried]
-[1.222, 1.857]
+>>> round(gc.build(design.with_({"law.eccentricity": 0.2})).facts["pair.ratio"]["max"], 3)
+1.5
+>>> variants = gc.sweep(design, {"law.eccentricity": [0.1, 0.3]}, jobs=1)
+>>> variants.columns["pair.ratio.max"].round(3)
+array([1.222, 1.857])
 
 *What goes wrong* is told at once: `DesignError` lists the mistakes in a design, `InfeasibleError`
 tells why it cannot be made and the nearest value that can; `remedies` searches for changes that

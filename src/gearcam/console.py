@@ -217,7 +217,7 @@ class _Talk:
 
 @contextlib.contextmanager
 def talking(*, quiet: bool, aside: bool) -> Iterator[None]:
-    """Let a command say nothing if it is to be `quiet`, or say it to stderr, `aside`."""
+    """Yield while a command says nothing, if it is to be `quiet`, or says it to stderr, `aside`."""
     before, _Talk.stream = _Talk.stream, "" if quiet else "stderr" if aside else "stdout"
     try:
         yield

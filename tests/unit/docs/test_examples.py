@@ -17,7 +17,7 @@ from gearcam.laws.motion import MOTION_LAWS
 from gearcam.laws.ratio import LAWS
 from helpers_examples import faults, lines_of, room
 
-LINES = range(2, 10)
+LINES = range(2, 12)
 """How long an example may be, answers left out."""
 
 HOMES = {"gc": gc, "gc.laws": gc.laws, "gc.motion_laws": gc.motion_laws}

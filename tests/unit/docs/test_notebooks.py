@@ -34,14 +34,16 @@ def shown(notebook: Any) -> list[list[str]]:
 
 
 def test_there_are_notebooks() -> None:
-    assert [path.stem for path in STORED] == ["elliptical_pair", "measured_cam"]
+    names = ["elliptical_pair", "measured_cam", "published_numbers"]
+    assert [path.stem for path in STORED] == names
 
 
+@pytest.mark.parametrize("name", ["measured_cam", "published_numbers"])
 def test_cells_print_and_draw_what_is_stored(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The quickest of them in this process, without a kernel; the slow test runs all of them."""
-    (path,) = (one for one in STORED if one.stem == "measured_cam")
+    """The quicker ones in this process, without a kernel; the slow test runs all of them."""
+    (path,) = (one for one in STORED if one.stem == name)
     stored = nbformat.read(path, as_version=4)
     monkeypatch.chdir(tmp_path)
     plt.switch_backend("agg")
@@ -69,6 +71,24 @@ def test_a_notebook_does_what_is_stored(path: Path, tmp_path: Path) -> None:
     assert kinds.count("image/png") >= 2
     assert "image/svg+xml" in kinds  # of a result, which shows its page where it is run
     assert len(printed(stored)) >= 4
+
+
+def test_published_numbers_agree_and_stand_beside_their_sources() -> None:
+    (path,) = (one for one in STORED if one.stem == "published_numbers")
+    notebook = nbformat.read(path, as_version=4)
+    *agreeing, slips = printed(notebook)
+    rows = "".join(agreeing).splitlines()
+    assert rows[-1] == f"{len(rows) - 1} of {len(rows) - 1} numbers agree"
+    assert not [row for row in rows if "does not agree" in row]
+    assert slips.count("does not agree") == 2
+    sources = {row[59:].strip() for row in rows[:-1]}
+    cams = {one for one in sources if one.startswith(("Duca, fig. 3", "Khurmi"))}
+    assert len(cams) >= 5
+    assert "Litvin, Fuentes, ch. 12" in sources
+    assert {"Table 2.7", "Table 3.1", "(2.22)"} <= sources
+    told = "".join(cell.source for cell in notebook.cells)
+    for author in ("Litvin", "Niculescu", "Duca", "Khurmi"):
+        assert author in told
 
 
 @pytest.mark.parametrize("path", STORED, ids=lambda path: path.stem)
