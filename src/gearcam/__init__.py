@@ -106,7 +106,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Columns", "Design", "DesignError", "Facts", "Finding", "GearcamError", "InfeasibleError",
-    "MissingExtraError", "Result", "StudyResult", "Tolerances", "WriteError", "__version__",
+    "MissingExtraError", "Result", "Search", "StudyResult", "Sweep", "Tolerances", "WriteError",
+    "__version__",
     "build",
     "design", "laws", "load", "loads", "motion_laws", "optimize", "remedies", "sweep",
 ]  # fmt: skip
@@ -124,6 +125,8 @@ _HOMES = {
     "gearcam.numeric.columns": ("Columns",),
     "gearcam.results.result": ("Result",),
     "gearcam.results.study": ("StudyResult",),
+    "gearcam.sweeps.search": ("Search",),
+    "gearcam.sweeps.sweep": ("Sweep",),
     "gearcam.base.tolerances": ("Tolerances",),
 }  # fmt: skip
 """Names that are imported on demand, by their modules; kinds of design add theirs."""
@@ -425,15 +428,9 @@ def optimize(
     Examples
     --------
     >>> import gearcam as gc
-    >>> design = gc.load("profiles/ellipse.toml").with_({"output.files": ["csv"]})
-    >>> found = gc.optimize(
-    ...     design,
-    ...     {"law.eccentricity": [0.3, 0.4, 0.2]},
-    ...     minimize="pair.ratio.max",
-    ...     method="random",
-    ...     trials=6,
-    ...     jobs=1,
-    ... )
+    >>> keys = {"law.eccentricity": [0.3, 0.4, 0.2]}
+    >>> goal = {"minimize": "pair.ratio.max", "method": "random", "trials": 6}
+    >>> found = gc.optimize("profiles/ellipse.toml", keys, **goal, jobs=1)
     >>> [row.values["law.eccentricity"] for row in found.best]
     [0.2]
     """

@@ -108,9 +108,8 @@ class Search:
     --------
     >>> import gearcam as gc
     >>> keys = {"pair.face_width_mm": [8, 10, 12]}
-    >>> found = gc.optimize(
-    ...     "profiles/ellipse.toml", keys, minimize="gears.0.size_mm.2", method="random", trials=6
-    ... )
+    >>> goal = {"minimize": "gears.0.size_mm.2", "method": "random", "trials": 6}
+    >>> found = gc.optimize(gc.load("profiles/ellipse.toml"), keys, **goal, jobs=1)
     >>> found.best[0].values
     {'pair.face_width_mm': 8}
     """

@@ -82,7 +82,8 @@ class Sweep:
     Examples
     --------
     >>> import gearcam as gc
-    >>> sweep = gc.sweep("profiles/ellipse.toml", {"pair.module_mm": [1, 2]}, jobs=1)
+    >>> design = gc.load("profiles/ellipse.toml")
+    >>> sweep = gc.sweep(design, {"pair.module_mm": [1, 2]}, jobs=1)
     >>> [row.values for row in sweep]
     [{'pair.module_mm': 1}, {'pair.module_mm': 2}]
     """
