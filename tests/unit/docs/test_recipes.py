@@ -63,7 +63,12 @@ def test_a_recipe_prints_what_is_shown(
         printed = capsys.readouterr().out
     assert printed.splitlines() == shown
     files = {path.name for path in desk.rglob("*.*")} - {"recipe.py"}
-    written = {"3": {"contact_ratio.pdf", "sweep.csv"}, "6": {"centrodes.csv"}, "7": {"contact.png"}, "8": {"meshing.csv", "summary.json"}}
+    written = {
+        "3": {"contact_ratio.pdf", "sweep.csv"},
+        "6": {"centrodes.csv"},
+        "7": {"contact.png"},
+        "8": {"meshing.csv", "summary.json"},
+    }
     assert written.get(title.partition(".")[0], set()) <= files
 
 
@@ -72,7 +77,12 @@ OTHERS = {
     for page in sorted((rules.ROOT / "docs").glob("*.md"))
     if page.name != "python.md"
     for number, block in enumerate(
-        re.findall(r"^```python\n(import gearcam.*?)^```$", page.read_text("utf-8"), re.S | re.M), 1
+        re.findall(
+            r"^```python\n(import gearcam.*?)^```$",
+            page.read_text("utf-8"),
+            re.DOTALL | re.MULTILINE,
+        ),
+        1,
     )
 }
 """Scripts of other pages, by page and number."""
