@@ -41,6 +41,7 @@ from reference_parts import (
     KEY_HEADS,
     KEYS_INTRO,
     NONE,
+    STUDIES_INTRO,
     TITLES,
     code,
     key_rows,
@@ -344,6 +345,29 @@ def commands() -> Iterator[str]:
             yield table(("argument", "meaning"), rows)
 
 
+def studies() -> Iterator[str]:
+    """Yield the parts of the page on studies."""
+    yield "# Studies"
+    yield STUDIES_INTRO
+    shared: dict[str, list[str]] = {}
+    for kind in KINDS.values():
+        for study in kind.studies.own.values():
+            shared.setdefault(study.help, []).append(kind.name)
+    told = set[str]()
+    for kind in KINDS.values():
+        for study in kind.studies.own.values():
+            if study.help in told:
+                continue
+            told.add(study.help)
+            kinds = shared[study.help]
+            of = "all kinds" if len(kinds) == len(KINDS) else code(kind.name)
+            yield f"## {code(study.name)} of {of}"
+            yield study.doc
+            yield f"*Settings:* [the table {code(study.table)}](keys.md) of the design."
+            yield f"*Returns* {study.returns}"
+            yield f"```pycon\n{study.example.rstrip()}\n```"
+
+
 def option(action: argparse.Action, shown: argparse.HelpFormatter) -> tuple[str, str]:
     """Return an argument of a command as it is typed, and its meaning."""
     value = "" if action.nargs == 0 else str(action.metavar)
@@ -369,6 +393,7 @@ PAGES: Final[Mapping[str, Callable[[], Iterator[str]]]] = {
     "keys.md": keys,
     "files.md": files,
     "commands.md": commands,
+    "studies.md": studies,
     "exit-codes.md": exit_codes,
 }
 """What makes the parts of each page, by its name."""

@@ -66,6 +66,14 @@ Files are written to `DIR/NAME/`, where `DIR` is `output` or the folder given wi
 [exit-codes.md](exit-codes.md) for the exit codes.
 """
 
+STUDIES_INTRO: Final = """\
+A *study* is a further computation on a result. It runs by its command (`gearcam errors FILE`), as
+part of a build (`studies = ["errors"]` in `[output]`), and from Python: `result.study("errors")`.
+Its outcome has `columns`, the rows of its CSV file as arrays; `tables`, further ones; `facts`,
+which are in `summary.json` too; `findings`; `charts`; and `write(directory)`. `help(result.study)`
+says the same of the studies of a result. Other settings make another design:
+`result.design.with_({"errors.trials": 500})`."""
+
 CODES_OUTRO: Final = """\
 Given several files, a command works on all of them and returns the largest code. However a
 command ends, the files of a design are either all old or all new.

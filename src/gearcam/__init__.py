@@ -44,15 +44,15 @@ array([0.5385, 0.6435])
 ('gear1.dxf', 'gear2.dxf', 'pair.dxf', 'summary.json')
 
 *Studies* look at a result more closely: meshing, errors of mounting, forces, stress and others.
-Their settings are the keys of their table in a design file.
+Their settings are the keys of their table in a design file; ``help(result.study)`` tells of each.
 
 >>> study = result.mesh(steps=36, center_distance_mm=42.0)
 >>> round(study.facts["meshing.backlash_mm"]["min"], 4)
 0.0287
 
-*Variants.* `with_` returns a changed, checked copy of a design. `sweep` builds all variants, in
-several processes, and gives columns; `optimize` searches the best. The commands ``gearcam sweep``
-and ``gearcam optimize`` do the same.
+*Variants.* `with_` returns a changed, checked copy of a design; `record` is one row of a data
+frame. `sweep` builds thousands by all cores and gives columns, `optimize` searches the best: as the
+commands of the same names do.
 
 >>> round(gc.build(design.with_({"law.eccentricity": 0.2})).facts["pair.ratio"]["max"], 3)
 1.5
@@ -82,7 +82,7 @@ from gearcam.version import __version__
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Mapping
 
     from gearcam import laws
     from gearcam.base.errors import (
@@ -103,13 +103,14 @@ if TYPE_CHECKING:
     from gearcam.results.advice import Remedies
     from gearcam.results.result import Result
     from gearcam.results.study import StudyResult
-    from gearcam.sweeps.search import Search
-    from gearcam.sweeps.sweep import Sweep
+    from gearcam.sweeps.search import Search, optimize
+    from gearcam.sweeps.sweep import Sweep, sweep
 
 
 __all__ = [
     "Columns", "Design", "DesignError", "Facts", "Finding", "GearcamError", "InfeasibleError",
-    "MissingExtraError", "Result", "StudyResult", "Tolerances", "WriteError", "__version__",
+    "MissingExtraError", "Result", "Search", "StudyResult", "Sweep", "Tolerances", "WriteError",
+    "__version__",
     "build",
     "design", "laws", "load", "loads", "motion_laws", "optimize", "remedies", "sweep",
 ]  # fmt: skip
@@ -127,6 +128,8 @@ _HOMES = {
     "gearcam.numeric.columns": ("Columns",),
     "gearcam.results.result": ("Result",),
     "gearcam.results.study": ("StudyResult",),
+    "gearcam.sweeps.search": ("Search", "optimize"),
+    "gearcam.sweeps.sweep": ("Sweep", "sweep"),
     "gearcam.base.tolerances": ("Tolerances",),
 }  # fmt: skip
 """Names that are imported on demand, by their modules; kinds of design add theirs."""
@@ -282,179 +285,3 @@ def remedies(
 
     instance("result", result, Result, "a result, as returned by build")
     return search(result, refusal, patience=patience)
-
-
-def sweep(
-    design: Design | str | os.PathLike[str],
-    keys: Mapping[str, Any] | None = None,
-    *,
-    random: int | None = None,
-    latin: int | None = None,
-    seed: int | None = None,
-    jobs: int | None = None,
-    client: Any = None,
-    limit: float = 300.0,
-    memory: float = 4.0,
-    folder: str | os.PathLike[str] | None = None,
-    progress: Callable[[int, int], Any] | None = None,
-) -> Sweep:
-    """Build variants of a design, as the command ``gearcam sweep`` does.
-
-    Nothing is built until the sweep is iterated, or asked for its columns. In a script it has to
-    stand under ``if __name__ == "__main__":``, since other processes read the script.
-
-    Parameters
-    ----------
-    design : Design or path
-        A design, or a design file, whose table ``[sweep]`` counts too.
-    keys : mapping of str to value, optional
-        What dotted keys of the design get, in the units of a design file: a value, a list or an
-        array of values, or a text: ``"0.05:0.6:0.01"``, a range with its end;
-        ``"log(1, 100, 20)"``; to be sampled ``"0.05:0.6"``, ``"log(1, 100)"``,
-        ``"normal(20, 0.01)"`` (mean and standard deviation) and ``"tolerance(20, 0.05)"`` (20
-        within 0.05 to either side). Of several keys all combinations are built.
-    random, latin : int, optional
-        Number of random samples, or of samples of a Latin hypercube, instead of all combinations.
-    seed : int, optional
-        Of samples; 1 by default.
-    jobs : int, optional
-        Number of processes; all cores by default.
-    client : object, optional
-        A client of dask.distributed, or an executor with ``submit``, whose workers build instead.
-    limit : float, s
-        Largest time of a variant: one that takes longer is refused.
-    memory : float, GB
-        Largest memory of a process.
-    folder : path, optional
-        Folder of the log ``sweep.log``, from which the same sweep goes on.
-    progress : callable, optional
-        ``progress(done, total)``, called after each row.
-
-    Returns
-    -------
-    Sweep
-        Iterated it yields rows as they come; `columns` are arrays by keys and names of facts.
-
-    Raises
-    ------
-    DesignError
-        If a key does not exist, a value or an argument is not allowed, or the folder has the log of
-        another sweep.
-    WriteError
-        If the log cannot be written.
-
-    Examples
-    --------
-    >>> import gearcam as gc
-    >>> design = gc.load("profiles/ellipse.toml")
-    >>> sweep = gc.sweep(design, {"law.eccentricity": [0.1, 0.3, 0.99]}, jobs=1)
-    >>> sweep.columns["pair.ratio.max"].round(4)
-    array([1.2222, 1.8571,    nan])
-    """
-    from gearcam.sweeps.sweep import sweep as made
-
-    return made(
-        design,
-        keys,
-        random=random,
-        latin=latin,
-        seed=seed,
-        jobs=jobs,
-        client=client,
-        limit=limit,
-        memory=memory,
-        folder=folder,
-        progress=progress,
-    )
-
-
-def optimize(
-    design: Design | str | os.PathLike[str],
-    keys: Mapping[str, Any] | None = None,
-    *,
-    minimize: str | Sequence[str] | None = None,
-    maximize: str | Sequence[str] | None = None,
-    findings: str | None = None,
-    method: str | None = None,
-    trials: int | None = None,
-    seed: int | None = None,
-    jobs: int | None = None,
-    client: Any = None,
-    limit: float = 300.0,
-    memory: float = 4.0,
-    folder: str | os.PathLike[str] | None = None,
-    progress: Callable[[int, int], Any] | None = None,
-) -> Search:
-    """Search the best variants of a design, as the command ``gearcam optimize`` does.
-
-    In a script it has to stand under ``if __name__ == "__main__":``, since other processes read the
-    script.
-
-    Parameters
-    ----------
-    design : Design or path
-        A design, or a design file, whose tables ``[sweep]`` and ``[goal]`` count too.
-    keys : mapping of str to value, optional
-        What is varied, as of `sweep`; ``"from:to"`` is any number between.
-    minimize, maximize : str or sequence of str, optional
-        Facts that are to be least, and those that are to be largest.
-    findings : {"error", "warning"}, optional
-        What the best must not have: errors, or warnings either.
-    method : {"scipy", "nsga2", "tpe", "random"}, optional
-        How to search; by goals and keys by default. All but the last need ``gearcam[optimize]``.
-    trials : int, optional
-        Largest number of variants; 200 by default.
-    seed : int, optional
-        Of random numbers; 1 by default.
-    jobs, client, limit, memory, progress
-        As of `sweep`.
-    folder : path, optional
-        Folder of the log ``optimize.log``, from which the same search goes on.
-
-    Returns
-    -------
-    Search
-        With the `best` rows, their `designs`, and `columns` of all trials.
-
-    Raises
-    ------
-    DesignError
-        If a goal is no fact of the design, or an argument is not allowed.
-    MissingExtraError
-        If the library of the method is not installed.
-    WriteError
-        If the log cannot be written.
-
-    Examples
-    --------
-    >>> import gearcam as gc
-    >>> design = gc.load("profiles/ellipse.toml").with_({"output.files": ["csv"]})
-    >>> found = gc.optimize(
-    ...     design,
-    ...     {"law.eccentricity": [0.3, 0.4, 0.2]},
-    ...     minimize="pair.ratio.max",
-    ...     method="random",
-    ...     trials=6,
-    ...     jobs=1,
-    ... )
-    >>> [row.values["law.eccentricity"] for row in found.best]
-    [0.2]
-    """
-    from gearcam.sweeps.search import optimize as found
-
-    return found(
-        design,
-        keys,
-        minimize=minimize,
-        maximize=maximize,
-        findings=findings,
-        method=method,
-        trials=trials,
-        seed=seed,
-        jobs=jobs,
-        client=client,
-        limit=limit,
-        memory=memory,
-        folder=folder,
-        progress=progress,
-    )

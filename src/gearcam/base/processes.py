@@ -30,7 +30,7 @@ _LOT: Final = 16
 _EACH: Final = 4
 """Lots of each process, at least."""
 
-UNGUARDED: Final = 'a script that starts processes under `if __name__ == "__main__":`'
+UNGUARDED: Final = 'a script, in a file, that starts processes under `if __name__ == "__main__":`'
 """What scripts have to look like that start processes."""
 
 

@@ -133,6 +133,10 @@ class Result(Staged):
     def study(self, name: str, progress: Progress | None = None, *, jobs: int = 1) -> StudyResult:
         """Return the outcome of a study with the settings of the design, computed once.
 
+        Settings are a table of the design: ``result.design.with_({"meshing.steps": 72})`` has
+        others. The outcome has `columns`, the rows of its CSV file; `facts`; `findings`; `charts`;
+        and ``write(directory)``.
+
         Parameters
         ----------
         name : str

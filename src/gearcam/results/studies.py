@@ -5,6 +5,7 @@ It imports neither the kind nor what the study computes: the help of the command
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -61,6 +62,10 @@ class Study:
         Whether its command takes several design files.
     parallel : bool
         Whether ``compute(result, progress, jobs)`` takes a number of processes.
+    returns : str
+        What rows, facts and charts its outcome has, in a sentence or two.
+    example : str
+        Lines of Python as typed, with ``>>>``, and their answers; profiles are beside.
     settings : type, optional
         The class of that table: of a study of another package, whose table has the study's name.
         Else a field of the design says it.
@@ -81,7 +86,20 @@ class Study:
     repeats: tuple[str, ...] = ()
     many: bool = True
     parallel: bool = False
+    returns: str = ""
+    example: str = ""
     settings: type | None = None
+
+    @property
+    def help(self) -> str:
+        """What it does, with which settings, what it returns, and an example."""
+        words = [
+            f"{self.name}: {self.doc}",
+            f"Settings: the table [{self.table}] of the design (docs/reference/keys.md).",
+            f"Returns: {self.returns}" if self.returns else "",
+        ]
+        lines = [one for text in words for one in textwrap.wrap(text, 92)]
+        return "\n".join([*lines, "", *self.example.splitlines()])
 
     def processes(self, jobs: int) -> dict[str, int]:
         """Return the arguments of `compute` for a number of processes.

@@ -105,8 +105,8 @@ class StudyResult(NotebookView):
     """
 
     for_users = (
-        "charts", "columns", "complete", "facts", "files", "findings", "picture", "to_dict",
-        "write",
+        "charts", "columns", "complete", "facts", "files", "findings", "picture", "tables",
+        "to_dict", "write",
     )  # fmt: skip
 
     result: Staged
@@ -183,7 +183,16 @@ class StudyResult(NotebookView):
 
     @cached_property
     def tables(self) -> dict[str, Columns]:
-        """Its further tables by name, such as ``trials`` of errors: one row for each assembly."""
+        """Its further tables by name, such as ``trials`` of errors: a row for each assembly.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> errors = {"errors.center_tolerance_mm": 0.02, "errors.trials": 5, "errors.steps": 36}
+        >>> study = gc.build(gc.load("profiles/ellipse.toml").with_(errors)).study("errors")
+        >>> list(study.tables), study.tables["trials"]["number"]
+        (['trials'], array([1., 2., 3., 4., 5.]))
+        """
         return {name: Columns(table) for name, table in self.further.items()}
 
     @cached_property

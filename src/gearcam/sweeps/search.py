@@ -108,9 +108,8 @@ class Search:
     --------
     >>> import gearcam as gc
     >>> keys = {"pair.face_width_mm": [8, 10, 12]}
-    >>> found = gc.optimize(
-    ...     "profiles/ellipse.toml", keys, minimize="gears.0.size_mm.2", method="random", trials=6
-    ... )
+    >>> goal = {"minimize": "gears.0.size_mm.2", "method": "random", "trials": 6}
+    >>> found = gc.optimize(gc.load("profiles/ellipse.toml"), keys, **goal, jobs=1)
     >>> found.best[0].values
     {'pair.face_width_mm': 8}
     """
@@ -298,7 +297,7 @@ class Search:
 
 
 def optimize(
-    design: Any,
+    design: Design | str | os.PathLike[str],
     keys: Mapping[str, Any] | None = None,
     *,
     minimize: str | Sequence[str] | None = None,
@@ -314,7 +313,55 @@ def optimize(
     folder: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
 ) -> Search:
-    """Return a search that has run (see `gearcam.optimize`)."""
+    """Search the best variants of a design, as the command ``gearcam optimize`` does.
+
+    In a script it has to stand under ``if __name__ == "__main__":``, since other processes read the
+    script.
+
+    Parameters
+    ----------
+    design : Design or path
+        A design, or a design file, whose tables ``[sweep]`` and ``[goal]`` count too.
+    keys : mapping of str to value, optional
+        What is varied, as of `sweep`; ``"from:to"`` is any number between.
+    minimize, maximize : str or sequence of str, optional
+        Facts that are to be least, and those that are to be largest.
+    findings : {"error", "warning"}, optional
+        What the best must not have: errors, or warnings either.
+    method : {"scipy", "nsga2", "tpe", "random"}, optional
+        How to search; by goals and keys by default. All but the last need ``gearcam[optimize]``.
+    trials : int, optional
+        Largest number of variants; 200 by default.
+    seed : int, optional
+        Of random numbers; 1 by default.
+    jobs, client, limit, memory, progress
+        As of `sweep`.
+    folder : path, optional
+        Folder of the log ``optimize.log``, from which the same search goes on.
+
+    Returns
+    -------
+    Search
+        With the `best` rows, their `designs`, and `columns` of all trials.
+
+    Raises
+    ------
+    DesignError
+        If a goal is no fact of the design, or an argument is not allowed.
+    MissingExtraError
+        If the library of the method is not installed.
+    WriteError
+        If the log cannot be written.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> keys = {"law.eccentricity": [0.3, 0.4, 0.2]}
+    >>> goal = {"minimize": "pair.ratio.max", "method": "random", "trials": 6}
+    >>> found = gc.optimize("profiles/ellipse.toml", keys, **goal, jobs=1)
+    >>> [row.values["law.eccentricity"] for row in found.best]
+    [0.2]
+    """
     end_if_unguarded()
     given: dict[str, Any] = {"findings": findings, "method": method, "trials": trials, "seed": seed}
     for name, facts in (("minimize", minimize), ("maximize", maximize)):

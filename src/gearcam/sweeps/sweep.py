@@ -82,7 +82,8 @@ class Sweep:
     Examples
     --------
     >>> import gearcam as gc
-    >>> sweep = gc.sweep("profiles/ellipse.toml", {"pair.module_mm": [1, 2]}, jobs=1)
+    >>> design = gc.load("profiles/ellipse.toml")
+    >>> sweep = gc.sweep(design, {"pair.module_mm": [1, 2]}, jobs=1)
     >>> [row.values for row in sweep]
     [{'pair.module_mm': 1}, {'pair.module_mm': 2}]
     """
@@ -229,7 +230,7 @@ class Sweep:
 
 
 def sweep(
-    design: Any,
+    design: Design | str | os.PathLike[str],
     keys: Mapping[str, Any] | None = None,
     *,
     random: int | None = None,
@@ -242,7 +243,59 @@ def sweep(
     folder: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
 ) -> Sweep:
-    """Return a sweep (see `gearcam.sweep`)."""
+    """Build variants of a design, as the command ``gearcam sweep`` does.
+
+    Nothing is built until the sweep is iterated, or asked for its columns. In a script it has to
+    stand under ``if __name__ == "__main__":``, since other processes read the script.
+
+    Parameters
+    ----------
+    design : Design or path
+        A design, or a design file, whose table ``[sweep]`` counts too.
+    keys : mapping of str to value, optional
+        What dotted keys of the design get, in the units of a design file: a value, a list or an
+        array of values, or a text: ``"0.05:0.6:0.01"``, a range with its end;
+        ``"log(1, 100, 20)"``; to be sampled ``"0.05:0.6"``, ``"log(1, 100)"``,
+        ``"normal(20, 0.01)"`` (mean and standard deviation) and ``"tolerance(20, 0.05)"`` (20
+        within 0.05 to either side). Of several keys all combinations are built.
+    random, latin : int, optional
+        Number of random samples, or of samples of a Latin hypercube, instead of all combinations.
+    seed : int, optional
+        Of samples; 1 by default.
+    jobs : int, optional
+        Number of processes; all cores by default.
+    client : object, optional
+        A client of dask.distributed, or an executor with ``submit``, whose workers build instead.
+    limit : float, s
+        Largest time of a variant: one that takes longer is refused.
+    memory : float, GB
+        Largest memory of a process.
+    folder : path, optional
+        Folder of the log ``sweep.log``, from which the same sweep goes on.
+    progress : callable, optional
+        ``progress(done, total)``, called after each row.
+
+    Returns
+    -------
+    Sweep
+        Iterated it yields rows as they come; `columns` are arrays by keys and names of facts.
+
+    Raises
+    ------
+    DesignError
+        If a key does not exist, a value or an argument is not allowed, or the folder has the log of
+        another sweep.
+    WriteError
+        If the log cannot be written.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> design = gc.load("profiles/ellipse.toml")
+    >>> sweep = gc.sweep(design, {"law.eccentricity": [0.1, 0.3, 0.99]}, jobs=1)
+    >>> sweep.columns["pair.ratio.max"].round(4)
+    array([1.2222, 1.8571,    nan])
+    """
     end_if_unguarded()
     plan = asked(design, keys).plan({"random": random, "latin": latin, "seed": seed})
     engine = engine_of(jobs=jobs, client=client, limit=limit, memory=memory)

@@ -50,18 +50,47 @@ def test_there_are_twelve_recipes() -> None:
 def test_a_recipe_prints_what_is_shown(
     title: str, desk: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    code = RECIPES[title]
+    code = RECIPES[title].replace("2000", "12")  # designs of a sweep
     assert max(map(len, code.splitlines())) <= 110
-    shown = re.findall(r"^# -> (.+)$", code, re.MULTILINE)
+    shown = re.findall(r"^ *# -> (.+)$", code, re.MULTILINE)
     assert shown
     script = desk / "recipe.py"
     script.write_text(code, "utf-8")
-    if "ProcessPoolExecutor" in code:
+    if "gc.sweep" in code:
         printed = apart(script)
     else:
         runpy.run_path(str(script), run_name="__main__")
         printed = capsys.readouterr().out
     assert printed.splitlines() == shown
     files = {path.name for path in desk.rglob("*.*")} - {"recipe.py"}
-    written = {"6": {"centrodes.csv"}, "7": {"contact.png"}, "8": {"meshing.csv", "summary.json"}}
+    written = {
+        "3": {"contact_ratio.pdf", "sweep.csv"},
+        "6": {"centrodes.csv"},
+        "7": {"contact.png"},
+        "8": {"meshing.csv", "summary.json"},
+    }
     assert written.get(title.partition(".")[0], set()) <= files
+
+
+OTHERS = {
+    f"{page.name} {number}": block
+    for page in sorted((rules.ROOT / "docs").glob("*.md"))
+    if page.name != "python.md"
+    for number, block in enumerate(
+        re.findall(
+            r"^```python\n(import gearcam.*?)^```$",
+            page.read_text("utf-8"),
+            re.DOTALL | re.MULTILINE,
+        ),
+        1,
+    )
+}
+"""Scripts of other pages, by page and number."""
+
+
+@pytest.mark.parametrize("name", chosen(list(OTHERS), "sweeps.md 1", "gear-pairs.md 1"))
+def test_scripts_of_other_pages_run(name: str, desk: Path) -> None:
+    assert "assert" in OTHERS[name]
+    script = desk / "script.py"
+    script.write_text(OTHERS[name], "utf-8")
+    runpy.run_path(str(script), run_name="__main__")

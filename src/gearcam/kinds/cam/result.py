@@ -27,6 +27,7 @@ from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.mass import quadrature_error
 from gearcam.results.parts import CHORDS, Estimates
 from gearcam.results.study import silent
+from gearcam.results.study_help import with_studies
 
 if TYPE_CHECKING:
     from gearcam.cams.cam import Cam
@@ -39,6 +40,7 @@ _HINTED: Final = ("pressure-angle", "jamming", "sharp-profile", "undercut", "coa
 """Findings whose messages name values that help."""
 
 
+@with_studies("cam")
 class CamResult(MadeCam):
     """Result of the design of a cam, computed on demand.
 

@@ -31,6 +31,7 @@ from gearcam.numeric.piecewise import with_both_sides
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.results.parts import CHORDS
 from gearcam.results.study import Progress, StudyResult
+from gearcam.results.study_help import with_studies
 
 if TYPE_CHECKING:
     from gearcam.gears.contact import FlankPairs
@@ -50,6 +51,7 @@ CENTRODE_POINTS = 720
 """Intervals of phi1 over which centrodes are tabulated: half degrees for a full turn."""
 
 
+@with_studies("gear-pair")
 class GearPairResult(MadePair):
     """Result of the design of a gear pair, computed on demand.
 

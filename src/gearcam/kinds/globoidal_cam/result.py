@@ -20,6 +20,7 @@ from gearcam.laws.indexing import IndexProgram, index_program
 from gearcam.numeric.columns import Columns
 from gearcam.numeric.mesh import Mesh
 from gearcam.parts.solids import carved, ribbed
+from gearcam.results.study_help import with_studies
 from gearcam.spatial.globoidal import GloboidalCam
 from gearcam.spatial.globoidal_carving import roller_corners, scallop, uncut_surface
 from gearcam.spatial.globoidal_make import make_globoidal
@@ -49,6 +50,7 @@ _SHOWN: Final = 360
 """Largest number of cam angles of a solid that is only looked at."""
 
 
+@with_studies("globoidal-cam")
 class GloboidalCamResult(GriddedCam):
     """Result of the design of a globoidal cam, computed on demand.
 

@@ -35,6 +35,7 @@ from gearcam.results.kind import kind_of
 from gearcam.results.nested import nested_result, within
 from gearcam.results.nested import placed as findings_of
 from gearcam.results.result import Result
+from gearcam.results.study_help import with_studies
 
 if TYPE_CHECKING:
     from gearcam.base.facts import Tree
@@ -69,6 +70,7 @@ _DRIVERS: Final = {
 Row = dict[str, Any]
 
 
+@with_studies("mechanism")
 class MechanismResult(Result):
     """Result of the design of a mechanism, computed on demand.
 

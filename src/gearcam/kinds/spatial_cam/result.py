@@ -24,6 +24,7 @@ from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
 from gearcam.numeric.mesh import Mesh
 from gearcam.parts.solids import carved
+from gearcam.results.study_help import with_studies
 from gearcam.results.table_rows import TableRows
 from gearcam.spatial.cam import SpatialCam
 from gearcam.spatial.carving import roller_corners, scallop
@@ -55,6 +56,7 @@ _WITNESSES: Final = ((360, 13), (720, 25))
 """Cam angles and places along the roller of two meshes that give the volume of a STEP solid."""
 
 
+@with_studies("spatial-cam")
 class SpatialCamResult(GriddedCam):
     """Result of the design of a cam in space, computed on demand.
 
