@@ -60,7 +60,7 @@ class CamDriveSpec(DriveSpec):
     --------
     >>> import gearcam as gc
     >>> gc.CamDriveSpec(speed=30.0, polydyne=True).named
-    '286.479 rpm'
+    '286.48 rpm'
     """
 
     polydyne: bool = param(

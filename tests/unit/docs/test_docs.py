@@ -370,7 +370,7 @@ def test_the_pair_of_the_contributing_page_has_the_size_shown() -> None:
     law = gearcam.laws.Formula(ratio="1/(1 - 0.25*sin(phi1)**2)")  # the joint's, up to a factor
     pair = gearcam.PairSpec(teeth=(40, 40), module=2.0)
     result = gearcam.build(gearcam.GearPairDesign(name="joint", law=law, pair=pair))
-    assert f"`centre distance {result.pair.center_distance:.4f} mm`" in GUIDE
+    assert f"`centre distance {result.pair.center_distance:.3f} mm`" in GUIDE
 
 
 def misspelt(document: dict[str, Any], kind: str) -> list[str]:
