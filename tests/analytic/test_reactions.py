@@ -272,7 +272,7 @@ def test_the_efficiency_of_a_slider_crank(friction: Any, known: Any) -> None:
 
 def test_a_slider_crank_locks_where_its_rod_is_too_steep() -> None:
     made = massless(20.0, 125.0, 100.0, **GUIDE)
-    assert locked_range(made) == pytest.approx((253.862173729, 286.137826271), abs=1e-3)
+    assert locked_range(made) == pytest.approx((253.862173729, 286.137826271), abs=5e-3)
     steepest = math.degrees(math.asin(120.0 / 125.0))
     assert steepest > 68.1985905136 == pytest.approx(math.degrees(math.atan(2.5)))
     share = made.result.study("forces").study_findings[0].message.split(" times")[0].split()[-1]
@@ -282,7 +282,7 @@ def test_a_slider_crank_locks_where_its_rod_is_too_steep() -> None:
 def test_journals_make_the_locked_range_lopsided() -> None:
     """Where both ends of the rod turn the same way their friction adds; else it cancels."""
     found = locked_range(massless(20.0, 125.0, 100.0, **JOURNALS))
-    assert found == pytest.approx((253.862173729, 287.914814678), abs=1e-3)
+    assert found == pytest.approx((253.862173729, 287.914814678), abs=5e-3)
 
 
 def swinging(**friction: Any) -> JointForces:
@@ -302,7 +302,7 @@ def test_a_swinging_guide_locks_where_its_block_is_too_near() -> None:
     """With an arm below 2*r_f/cos(phi_B)."""
     friction = {"friction": {"joint": 0.2, "journal_radius_mm": 20, "guide": 0.2}}
     made = swinging(**friction)
-    assert locked_range(made) == pytest.approx((265.180720807, 274.819279193), abs=1e-3)
+    assert locked_range(made) == pytest.approx((265.180720807, 274.819279193), abs=5e-3)
     found = made.at(np.radians([90.0, 230.0, 255.0]))
     agree(found.moment, np.array([26984.1269841, 37673.3835203, 171722.382103]))
     known = np.array([15.0 / 17.0, 0.398008447288, 0.214249712064])

@@ -25,6 +25,7 @@ from gearcam.base.readable import (
     ERROR_DIGITS,
     UnitScale,
     against,
+    column,
     ends,
     number,
     readable,
@@ -78,6 +79,9 @@ _LEAVES: Final = (("min", "max"), ("least", "mean"))
 
 _MAIN: Final = 12
 """Number of quantities that are shown first."""
+
+_MANY: Final = 5
+"""Most digits of a number that needs not more to look unlike its limit."""
 
 _ROUNDING: Final = 1e-9
 """Difference from a limit, as a share of it, that is rounding."""
@@ -145,6 +149,8 @@ class NamedFact:
         The value as people read it: ``0.4 to 1.6``, ``36 : 36``, ``4.923 mm``.
     error : float
         Stated error of the numbers; 0 if none is.
+    worded : bool
+        Whether the fact gives its text itself.
     """
 
     name: str
@@ -157,6 +163,36 @@ class NamedFact:
     shown: bool
     text: str = ""
     error: float = 0.0
+    worded: bool = False
+
+
+def told_alike(facts: Sequence[NamedFact]) -> list[str]:
+    """Return the texts of one quantity of several results, in one unit and with equal decimals.
+
+    Parameters
+    ----------
+    facts : sequence of NamedFact
+        At least one. Those that are no numbers, that give their text, or that need many digits to
+        look unlike a limit that they break, keep their texts.
+
+    Returns
+    -------
+    list of str
+    """
+    own = [one.text for one in facts]
+    numbers = [_settled(_numbers(one.value), one.noise) for one in facts]
+    many = any(sum(map(str.isdigit, text.split()[0])) > _MANY for text in own if text)
+    kinds = {type(one.value) for one in facts}, {one.unit for one in facts}
+    if many or any(one.worded for one in facts) or any(len(kind) > 1 for kind in kinds):
+        return own
+    error = max(one.error for one in facts)
+    to = scale_for([number for some in numbers for number in some], facts[0].unit)
+    if isinstance(facts[0].value, float):
+        texts = column([to.times(some[0]) for some in numbers], to.unit, error=error * to.factor)
+        return [f"{text} {to.unit}".rstrip() for text in texts]
+    if isinstance(facts[0].value, Mapping):
+        return [_in_unit(one.value, to, one.noise, error) for one in facts]
+    return own
 
 
 def text_of(value: Any, unit: str = "", *, noise: float = 0.0, error: float = 0.0) -> str:
@@ -427,7 +463,13 @@ def _quantity(name: str, leaf: Any) -> NamedFact:
         text, limit = readable(value, unit, digits=ERROR_DIGITS), ""
     else:
         text, limit = _told(fact, value, unit)
-    more = {"noise": fact.noise, "shown": fact.shown, "error": fact.error, "place": fact.place}
+    more = {
+        "noise": fact.noise,
+        "shown": fact.shown,
+        "error": fact.error,
+        "place": fact.place,
+        "worded": bool(fact.text),
+    }
     return NamedFact(name, value, unit, meaning, limit, text=text, **more)
 
 

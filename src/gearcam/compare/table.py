@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from gearcam.base.display import ShortRepr
-from gearcam.base.facts import NamedFact, lined_up
+from gearcam.base.facts import NamedFact, lined_up, told_alike
 from gearcam.compare.variants import Variant
 from gearcam.console import wrapped
 
@@ -80,8 +80,9 @@ def _row(facts: Sequence[NamedFact | None]) -> Row:
     there = [one for one in facts if one is not None]
     limits = {one.limit for one in there}
     common = limits.pop() if len(limits) == 1 else ""
+    texts = iter(told_alike(there))
     cells = tuple(
-        "" if fact is None else fact.text + f" ({fact.limit})" * (fact.limit != common)
+        "" if fact is None else next(texts) + f" ({fact.limit})" * (fact.limit != common)
         for fact in facts
     )
     return Row(name=there[0].name, meaning=there[0].meaning, cells=cells, limit=common)

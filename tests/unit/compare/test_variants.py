@@ -11,6 +11,7 @@ import pytest
 
 import gearcam
 from gearcam.base.errors import DesignError
+from gearcam.base.facts import Fact, Facts, told_alike
 from gearcam.cli import main
 from gearcam.compare.page import _over, document, joined
 from gearcam.compare.table import lines, rows
@@ -289,3 +290,17 @@ def test_compare_does_not_touch_other_files(
     run(capsys, ELLIPSE, "--set", "law.eccentricity=0.1,0.2", "-o", str(tmp_path))
     names = sorted(one.name for one in tmp_path.iterdir())
     assert names == ["compare.html", "mine.txt", "summary.json"]
+
+
+def test_a_fact_of_variants_has_one_unit_and_equal_decimals() -> None:
+    def told(*values: Any, **more: Any) -> list[str]:
+        return told_alike([Facts({"a_mm_s2": Fact(v, **more)}).quantity("a_mm_s2") for v in values])
+
+    assert told(9000.0, 123456.7) == ["9.00 m/s2", "123.46 m/s2"]
+    assert told({"min": 0.0, "max": 20.5}, {"min": 1.0, "max": 23456.7}) == [
+        "0 to 0.0205 m/s2",
+        "0.001 to 23.46 m/s2",
+    ]
+    assert told(5.0, 3.25, text="some") == ["some mm/s2", "some mm/s2"]
+    # what breaks its limit looks unlike it, with more digits
+    assert told(2.0000001, 5.25, at_most=2.0)[0] == "2.0000001 mm/s2"

@@ -83,7 +83,7 @@ def test_beyond_its_jump_it_flies() -> None:
         assert not columns["torque_nm"][inside].any()
         assert one["impact_mm_s"] > 0.0
     (found,) = [one for one in study.study_findings if one.code == "jump"]
-    assert "up to 1131.86 rpm" in found.message
+    assert "up to 1131.9 rpm" in found.message
     assert found.value == pytest.approx(max(one["impact_mm_s"] for one in flights))
 
 
