@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from selenium.webdriver import ActionChains, Chrome, Keys
 from selenium.webdriver.common.by import By
+from selenium.webdriver.support.ui import Select
 
 import gearcam
 from gearcam.compare.page import document as document_of_variants
@@ -310,6 +311,7 @@ def test_the_live_view_shows_the_solids_of_the_numbers_in_the_page(
         camera = f"{INSIDE} view.camera.position.x += 50; return view.camera.position.toArray()"
         seen = browser.execute_script(camera)
         browser.execute_script(f"{INSIDE} view.old = true")
+        Select(browser.find_element(By.CSS_SELECTOR, ".cut select")).select_by_value("y")
         length = browser.find_element(By.CSS_SELECTOR, 'input[aria-label="cam.length_mm, number"]')
         length.clear()
         length.send_keys("120", Keys.ENTER)
@@ -322,6 +324,9 @@ def test_the_live_view_shows_the_solids_of_the_numbers_in_the_page(
         # seen from where it was
         again = browser.execute_script(f"{INSIDE} return view.camera.position.toArray()")
         assert again == pytest.approx(seen)
+        # and cut as it was
+        cut = f"{INSIDE} return view.renderer.clippingPlanes.map((one) => one.normal.toArray())"
+        assert browser.execute_script(cut) == [[0, 1, 0]]
         browser.find_element(By.CSS_SELECTOR, "#solids summary").click()
         file.write_text(
             file.read_text().replace("outer_diameter_mm = 200", "outer_diameter_mm = 210")

@@ -326,8 +326,8 @@
     // another kind of design has another page
     const { kind, solids } = state.document ?? {};
     if (kind && (kind !== live.kind || (solids ?? live.solids) !== live.solids)) {
-      pending = {};
-      location.reload();
+      reload();
+      return;
     }
     if (state.document) show(state.document);
     tell(state.error, Boolean(state.error));

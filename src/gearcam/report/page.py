@@ -69,7 +69,6 @@ SCRIPTS: Final = (
     "scene.js",
     *_CHARTS,
     "blocks.js",
-    "solids.js",
     "places.js",
     "measure.js",
     "page.js",
@@ -77,8 +76,14 @@ SCRIPTS: Final = (
 )
 """Parts of the script of a page with moving parts."""
 
-STILL: Final = (*_CHARTS, "blocks.js", "solids.js", "charts_page.js")
+STILL: Final = (*_CHARTS, "blocks.js", "charts_page.js")
 """Parts of the script of a page without moving parts."""
+
+SOLIDS: Final = ("solids_cut.js", "solids_measure.js", "solids.js")
+"""Parts of the script before those, where solids are shown."""
+
+NO_SOLIDS: Final = ("no_solids.js",)
+"""The same elsewhere."""
 
 _HOME: Final = Path(__file__).parent
 
@@ -119,14 +124,17 @@ def page(
     bytes
         HTML, UTF-8, including scripts, styles and data.
     """
+    held = bool((solids or {}).get("view") or (live and document.get("solids")))
+    scripts = (*(SOLIDS if held else NO_SOLIDS), *(SCRIPTS if document["scene"] else STILL))
+    styles = ("uPlot/uPlot.min.css", "page.css", *(("solids.css",) if held else ()))
     values = {
         "document": document,
         "data": _embedded(document),
         "live": _embedded(live) if live else "",
         "solids": solids or {},
         "view": _embedded((solids or {}).get("view", "")),
-        "style": _contents("uPlot/uPlot.min.css", "page.css", "solids.css"),
-        "script": _contents(*(SCRIPTS if document["scene"] else STILL)),
+        "style": _contents(*styles),
+        "script": _contents(*scripts),
         "live_style": _contents("live.css") if live else "",
         "live_script": _contents("handles.js", "live.js") if live else "",
         "licence": _contents("uPlot/LICENSE"),
@@ -157,7 +165,7 @@ def charts_page(title: str, charts: Sequence[Chart], text: str) -> bytes:
         "text": text,
         "data": _embedded({"title": title, "charts": data}),
         "style": _contents("uPlot/uPlot.min.css", "page.css"),
-        "script": _contents(*STILL),
+        "script": _contents(*NO_SOLIDS, *STILL),
         "licence": _contents("uPlot/LICENSE"),
     }
     return rendered("charts.html", values).encode()

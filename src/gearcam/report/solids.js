@@ -5,13 +5,16 @@
 
 const solids = (() => {
   const home = document.querySelector("#solids details");
-  if (!home) return { move() {}, renew() {}, from() {} };
   const dark = matchMedia("(prefers-color-scheme: dark)");
   const METAL = [0x4d7fb8, 0xb8803f, 0x5c8f5c]; // colours of the bodies in order
   const TURN = Math.PI / 18; // per arrow key, rad
   const ZOOM = 1.15; // factor per + or -
   const AROUND = 24; // places at which all must be in sight
   const MARGIN = 1.02;
+  const stage = home.querySelector(".view");
+  const tools = home.querySelector(".tools");
+  const cut = new SolidCut(home);
+  const measure = new SolidMeasure(home, cut, axisOf);
   const hint = home.querySelector(".hint");
   const HINT = hint.textContent;
   let frame = null;
@@ -89,11 +92,13 @@ const solids = (() => {
     frame?.remove();
     frame = null;
     delete home.dataset.drawn;
+    stage.hidden = tools.hidden = true;
     if (!text) return;
+    stage.hidden = false;
     frame = document.createElement("iframe");
     frame.title = "The solids, to be turned and zoomed";
     frame.srcdoc = text;
-    home.querySelector(".view").append(frame);
+    stage.prepend(frame);
     ready(frame, before && [before.camera, before.controls]);
   }
 
@@ -106,7 +111,7 @@ const solids = (() => {
       return;
     }
     // the loader knows boxes only
-    inside.scene.traverse((one) => one.isMesh && one.geometry.computeBoundingSphere());
+    for (const one of solidBodies(inside.scene)) one.geometry.computeBoundingSphere();
     pose(inside);
     paint(inside);
     aim(inside);
@@ -114,6 +119,9 @@ const solids = (() => {
     if (before) resume(inside, ...before);
     inside.addEventListener("resize", () => fit(inside));
     inside.addEventListener("keydown", key);
+    cut.put(inside, reached(inside));
+    measure.put(inside);
+    tools.hidden = false;
     home.dataset.drawn = "true";
   }
 
@@ -121,13 +129,12 @@ const solids = (() => {
     let count = 0;
     inside.scene.background.set(dark.matches ? 0x1a2027 : 0xffffff);
     inside.tracklight.intensity = 1.1;
-    inside.scene.traverse((one) => {
-      if (!one.isMesh) return;
+    for (const one of solidBodies(inside.scene)) {
       one.material = one.material.clone(); // bodies share one material
       one.material.color.set(METAL[count++ % METAL.length]);
       one.material.metalness = 0;
       one.material.roughness = 0.7;
-    });
+    }
     inside.render();
   }
 
@@ -139,22 +146,35 @@ const solids = (() => {
     for (let k = 0; k <= AROUND; k++) {
       place = places[Math.round((k * (places.length - 1)) / AROUND)];
       pose(inside);
-      inside.scene.traverse((one) => {
-        if (!one.isMesh) return;
+      for (const one of solidBodies(inside.scene)) {
         found.push(one.geometry.boundingSphere.clone().applyMatrix4(one.matrixWorld));
-      });
+      }
     }
     place = now;
     pose(inside);
     return found;
   }
 
+  // The box that the bodies reach at all places.
+  function reached(inside) {
+    const { THREE } = inside;
+    const box = new THREE.Box3();
+    for (const ball of balls(inside)) box.union(ball.getBoundingBox(new THREE.Box3()));
+    return box;
+  }
+
+  // The axis about which a body turns; nothing if it does not.
+  function axisOf(name) {
+    const { places } = scene;
+    const at = (share) => new Map(posesAt(places[Math.round(share * (places.length - 1))])).get(name);
+    const [first, ...others] = [0, 0.3, 0.7, 0.9].map(at);
+    return first && others.some((one) => one.turn !== first.turn) ? first.axis : null;
+  }
+
   // Look at the middle of what the bodies reach.
   function aim(inside) {
     const { camera, controls, THREE } = inside;
-    const reached = new THREE.Box3();
-    for (const ball of balls(inside)) reached.union(ball.getBoundingBox(new THREE.Box3()));
-    reached.getCenter(controls.target);
+    reached(inside).getCenter(controls.target);
     camera.up.set(...scene.up);
     camera.position.copy(controls.target).add(new THREE.Vector3(...scene.eye));
   }
@@ -191,6 +211,7 @@ const solids = (() => {
   }
 
   function key(event) {
+    if (measure.key(event)) return;
     const { camera, controls, THREE } = view();
     const way = camera.position.clone().sub(controls.target);
     const across = camera.up.clone().cross(way).normalize();
@@ -218,7 +239,7 @@ const solids = (() => {
     inside.render();
     const shown = document.createElement("img");
     shown.alt = "The solids";
-    shown.src = inside.renderer.domElement.toDataURL();
+    shown.src = measure.printed(inside.renderer.domElement);
     home.querySelectorAll("img").forEach((one) => one.remove());
     home.append(shown);
     paint(inside);

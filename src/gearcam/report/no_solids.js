@@ -1,0 +1,2 @@
+// A page without solids.
+const solids = { move() {}, renew() {}, from() {} };
