@@ -103,13 +103,13 @@ if TYPE_CHECKING:
     from gearcam.results.advice import Remedies
     from gearcam.results.result import Result
     from gearcam.results.study import StudyResult
-    from gearcam.sweeps.search import Search, optimize
+    from gearcam.sweeps.search import Optimum, optimize
     from gearcam.sweeps.sweep import Sweep, sweep
 
 
 __all__ = [
     "Columns", "Design", "DesignError", "Facts", "Finding", "GearcamError", "InfeasibleError",
-    "MissingExtraError", "Result", "Search", "StudyResult", "Sweep", "Tolerances", "WriteError",
+    "MissingExtraError", "Optimum", "Result", "StudyResult", "Sweep", "Tolerances", "WriteError",
     "__version__",
     "build",
     "design", "laws", "load", "loads", "motion_laws", "optimize", "remedies", "sweep",
@@ -128,7 +128,7 @@ _HOMES = {
     "gearcam.numeric.columns": ("Columns",),
     "gearcam.results.result": ("Result",),
     "gearcam.results.study": ("StudyResult",),
-    "gearcam.sweeps.search": ("Search", "optimize"),
+    "gearcam.sweeps.search": ("Optimum", "optimize"),
     "gearcam.sweeps.sweep": ("Sweep", "sweep"),
     "gearcam.base.tolerances": ("Tolerances",),
 }  # fmt: skip

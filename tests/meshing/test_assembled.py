@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
-from gearcam.meshing.assembled import Phases
+from gearcam.meshing.assembled import AssembledSide
 from gearcam.meshing.assembly import Assembly
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.edges import first_touch, known_to
@@ -53,7 +53,7 @@ def test_leads_of_many_assemblies_are_those_searched_in_full(name: str, side: in
     gears = profile(name).gears
     pairs = flank_pairs(gears, side)
     phi1 = np.linspace(0.0, pairs.travel, 45, endpoint=not pairs.closed)
-    phases = Phases(gears=gears, side=side, phi1=phi1)
+    phases = AssembledSide(gears=gears, side=side, phi1=phi1)
     for size in (0.02, 0.1, 0.4):  # of the largest every phase is searched in full
         for one in assemblies(name, size):
             mounting = one.mounting(gears[0].pair.shift)
@@ -70,7 +70,7 @@ def test_leads_are_not_searched_in_full_where_errors_are_small(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     gears = profile("ellipse").gears
-    phases = Phases(gears=gears, side=DRIVE, phi1=np.linspace(0.0, 6.0, 45))
+    phases = AssembledSide(gears=gears, side=DRIVE, phi1=np.linspace(0.0, 6.0, 45))
     one, *_ = assemblies("ellipse", 0.03)
     mounting = one.mounting(gears[0].pair.shift)
     first = phases.leads(mounting)

@@ -135,7 +135,7 @@ class _Touching(ShortRepr):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Phases(ShortRepr):
+class AssembledSide(ShortRepr):
     """A side of a pair at phases of the driver, and what is the same for its assemblies.
 
     Parameters

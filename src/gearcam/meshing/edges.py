@@ -487,7 +487,15 @@ class Rounding(NamedTuple):
 
 
 def rounding_at(pairs: FlankPairs, phi1: Array) -> Rounding:
-    """Return to how much leads are known at phases, rad, of any mounting of a side's wheels."""
+    """Return to how much leads are known at phases, of any mounting of a side's wheels.
+
+    Parameters
+    ----------
+    pairs : FlankPairs
+        The side.
+    phi1 : (n,) array, rad
+        Phases.
+    """
     guide, frames = pairs.guide, pairs.wheels[0].toothing.frames(phi1, curved=False)
     foot, normal = pitch_points(pairs, phi1)
     lever = np.abs(guide.lever(foot, normal))
@@ -499,7 +507,14 @@ def rounding_at(pairs: FlankPairs, phi1: Array) -> Rounding:
 
 
 def pitch_points(pairs: FlankPairs, phi1: Array) -> tuple[Plane, Plane]:
-    """Return the pitch points at phases, rad, and the common normals of flanks as designed.
+    """Return the pitch points at phases, and the common normals of flanks as designed.
+
+    Parameters
+    ----------
+    pairs : FlankPairs
+        The side.
+    phi1 : (n,) array, rad
+        Phases.
 
     Returns
     -------

@@ -24,7 +24,7 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import InfeasibleError
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, Mounting, flank_pairs, turns_of_cycle
-from gearcam.meshing.assembled import Phases
+from gearcam.meshing.assembled import AssembledSide
 from gearcam.meshing.assembly import Assembly, Gears
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.edges import first_touch
@@ -224,9 +224,9 @@ class Runs(ShortRepr):
         return self.width * (number / count - 0.5), self.width * ((number + 1) / count - 0.5)
 
     @cached_property
-    def _phases(self) -> list[dict[int, Phases]]:
+    def _phases(self) -> list[dict[int, AssembledSide]]:
         return [
-            {side: Phases(gears=gears, side=side, phi1=self.phi1) for side in (DRIVE, COAST)}
+            {side: AssembledSide(gears=gears, side=side, phi1=self.phi1) for side in (DRIVE, COAST)}
             for gears in self.steps
         ]
 
@@ -250,14 +250,14 @@ class _Section:
         Their errors.
     mounting : Mounting
         Where they are.
-    phases : mapping of int to Phases
+    phases : mapping of int to AssembledSide
         Both sides at the driver angles.
     """
 
     gears: Gears
     assembly: Assembly
     mounting: Mounting
-    phases: Mapping[int, Phases]
+    phases: Mapping[int, AssembledSide]
 
     @cached_property
     def sides(self) -> dict[int, FlankPairs]:
@@ -319,7 +319,7 @@ def first_of(sections: list[FlankPairs], phi1: Array) -> tuple[Array, Mask]:
     sections : list of FlankPairs
         The side in each of them.
     phi1 : (n,) array, rad
-        Phases.
+        AssembledSide.
 
     Returns
     -------

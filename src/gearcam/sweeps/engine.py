@@ -80,6 +80,10 @@ def missing_rows(plan: Plan, there: RowStore, engine: Engine) -> Iterator[Built]
         Rows of this sweep that are there; new ones are kept with them.
     engine : Engine
         What builds them.
+
+    Yields
+    ------
+    Built
     """
 
     def missing() -> Iterator[Job]:

@@ -69,7 +69,7 @@ class Futures(Engine):
             yield chunks.rows
         finally:
             chunks.end()
-            dismiss(order.token)  # of threads of this process; others end when they are idle
+            dismiss(order.token)  # of threads of this process; others end by themselves
 
 
 class _Sent:

@@ -18,7 +18,7 @@ from gearcam.designs.design import document_of, value_at
 from gearcam.kinds.shared import METHODS
 from gearcam.sweeps.command import asked_by, engine_arguments, engine_given, told
 from gearcam.sweeps.rows import Built, measured
-from gearcam.sweeps.search import Search, goals_for
+from gearcam.sweeps.search import Optimum, goals_for
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -49,7 +49,7 @@ def optimize(options: Options) -> int:
 def _optimize(options: Options, file: str) -> int:
     names = ("minimize", "maximize", "method", "trials", "seed")
     what = goals_for(asked_by(options), {name: options[name] for name in names})
-    with Search(what, engine_given(options), options["output"]) as search:
+    with Optimum(what, engine_given(options), options["output"]) as search:
         more = f", {search.there} are there" if search.there else ""
         reason = f", since {search.why}" if search.why else ""
         count = _count(search.goal.trials)
@@ -91,7 +91,7 @@ def _count(trials: int) -> str:
     return f"{trials} trial{'s' if trials != 1 else ''}"
 
 
-def _table(search: Search, best: Sequence[Built]) -> Iterator[tuple[str, ...]]:
+def _table(search: Optimum, best: Sequence[Built]) -> Iterator[tuple[str, ...]]:
     """Yield the rows of a table: goals and values of the given design and of the best."""
     plan = search.plan
     given = measured(plan.base, 0, {})

@@ -264,8 +264,8 @@ def page(
 
 def _result(design: Design) -> Result | None:
     """Return the result of a design; None if it cannot be made, as the one that is varied may."""
-    from gearcam import build
     from gearcam.base.errors import GearcamError
+    from gearcam.kinds import build
 
     try:
         result = build(design)
@@ -288,8 +288,9 @@ def _scenes(
     rows: _Rows, text: str, keys: Sequence[str], goals: Mapping[str, float]
 ) -> dict[int, Scene]:
     """Return scenes of some variants by their places: of the best, or of some that can be made."""
-    from gearcam import build, loads
     from gearcam.base.errors import GearcamError
+    from gearcam.designs import loads
+    from gearcam.kinds import build
 
     made = [place for place, reason in enumerate(rows.refused) if reason < 0]
     places = rows.best(goals) if goals else made

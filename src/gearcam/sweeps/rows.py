@@ -7,11 +7,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
-from gearcam import build
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import GearcamError
 from gearcam.base.findings import Finding
 from gearcam.designs.design import Design
+from gearcam.kinds import build
 
 TOO_LARGE: Final = "it needs more memory than a variant may have"
 

@@ -85,7 +85,7 @@ def goals_for(what: Asked, given: Mapping[str, Any]) -> Asked:
     return replace(what, base=base)
 
 
-class Search:
+class Optimum:
     """A search for the best variants of a design.
 
     Parameters
@@ -140,7 +140,7 @@ class Search:
 
     def __repr__(self) -> str:
         goals = ", ".join(_goals(self.goal.signs))
-        return cut(f'<Search of "{self.plan.base.name}": {len(self.rows)} trials; {goals}>')
+        return cut(f'<Optimum of "{self.plan.base.name}": {len(self.rows)} trials; {goals}>')
 
     def __enter__(self) -> Self:
         return self
@@ -178,7 +178,7 @@ class Search:
 
         Returns
         -------
-        Search
+        Optimum
             This one.
 
         Raises
@@ -312,7 +312,7 @@ def optimize(
     memory: float = GIGABYTES,
     folder: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
-) -> Search:
+) -> Optimum:
     """Search the best variants of a design, as the command ``gearcam optimize`` does.
 
     In a script it has to stand under ``if __name__ == "__main__":``, since other processes read the
@@ -341,7 +341,7 @@ def optimize(
 
     Returns
     -------
-    Search
+    Optimum
         With the `best` rows, their `designs`, and `columns` of all trials.
 
     Raises
@@ -368,7 +368,7 @@ def optimize(
         given[name] = [*facts] if isinstance(facts, tuple) else facts
     what = goals_for(asked(design, keys), given)
     engine = engine_of(jobs=jobs, client=client, limit=limit, memory=memory)
-    return Search(what, engine, folder).run(progress)
+    return Optimum(what, engine, folder).run(progress)
 
 
 def _ends(best: Sequence[Built]) -> list[str]:

@@ -54,7 +54,7 @@ class Outcome(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Trials(ShortRepr):
+class AssemblyTrials(ShortRepr):
     """The random assemblies that were tried.
 
     Parameters

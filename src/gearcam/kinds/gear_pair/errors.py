@@ -15,7 +15,7 @@ from gearcam.base.facts import Fact, Tree, extent
 from gearcam.base.findings import limit_of, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import ARCSEC
-from gearcam.kinds.gear_pair.error_trials import Outcome, Trials, tried
+from gearcam.kinds.gear_pair.error_trials import AssemblyTrials, Outcome, tried
 from gearcam.meshing.assembly import Assembly, alone, demand, given
 from gearcam.meshing.error_checks import TRANSMISSION
 from gearcam.meshing.errors import Running, Runs, cycle, largest, of_error
@@ -111,7 +111,7 @@ def study_errors(result: GearPairResult, progress: Progress, jobs: int = 1) -> S
                 done.append(one)  # noqa: PERF402 - an interruption leaves those that are done
         except KeyboardInterrupt:
             pass
-        trials = Trials(
+        trials = AssemblyTrials(
             assemblies=[one for one, _ in done],
             outcomes=[outcome for _, outcome in done],
             unit=without.unit,
@@ -281,7 +281,7 @@ def _columns(
     }
 
 
-def _charts(lines: Mapping[str, Running], trials: Trials, unit: str) -> dict[str, Chart]:
+def _charts(lines: Mapping[str, Running], trials: AssemblyTrials, unit: str) -> dict[str, Chart]:
     """Return transmission errors with and without errors, and the histogram of the trials."""
     from gearcam.kinds.gear_pair.drawn import DRIVER
 
