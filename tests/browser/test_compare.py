@@ -37,6 +37,24 @@ return count;
 """
 
 
+DASHED = """
+const { page } = gearcam;
+const poses = gearcam.poses();
+const found = [];
+const root = new DOMParser().parseFromString(gearcam.svg(), "image/svg+xml");
+for (const way of root.querySelectorAll("g > path")) {
+  // the outlines of the second variant, which are not filled
+  const at = (way.getAttribute("transform") ?? "").match(/translate\\((\\S+) /);
+  if (!at || way.getAttribute("fill") !== "none" || !way.getAttribute("d").endsWith("Z")) continue;
+  if (way.getAttribute("d").length < 2000) continue;
+  const one = poses.find((pose) => Math.abs(pose.x - Number(at[1])) < 1e-3);
+  const dashes = way.getAttribute("stroke-dasharray");
+  found.push([one.name, dashes ? [9, 3] : []]);
+}
+return found;
+"""
+
+
 @pytest.fixture(scope="module")
 def path(tmp_path_factory: pytest.TempPathFactory) -> Path:
     variants = variants_of([str(PROFILES / "ellipse.toml")], SETTINGS)
@@ -115,3 +133,15 @@ def test_nothing_is_cut_off(browser: Chrome, path: Path) -> None:
     assert frame.get_property("scrollWidth") == frame.get_property("clientWidth")
     wide = "const e = document.scrollingElement; return [e.scrollWidth, e.clientWidth]"
     assert browser.execute_script(wide) == [WIDE[0], WIDE[0]]
+
+
+def test_members_of_a_variant_differ_in_dashes_in_the_picture(browser: Chrome, path: Path) -> None:
+    open_page(browser, path, WIDE)
+    drawn = browser.execute_script(DASHED)
+    assert {name for name, _ in drawn} == {"gear1", "gear2"}
+    for name, dashes in drawn:
+        assert dashes == ([] if name == "gear1" else [9, 3])
+    rows = browser.find_elements(By.CSS_SELECTOR, "#seen .member")
+    assert [one.text.strip() for one in rows] == ["driver", "driven wheel"]
+    told = [one.find_element(By.TAG_NAME, "path").get_attribute("stroke-dasharray") for one in rows]
+    assert told == ["", "9 3"]

@@ -42,6 +42,9 @@ _SHARE: Final = 4
 _OF_TIME: Final = 9
 """Significant digits of the last time of a scene: between all places some time passes."""
 
+_ENDS: Final = 12
+"""Significant digits of the ends of an axis."""
+
 _DIGITS: Final = 6
 """Significant digits of the largest value of a chart; the others have as many decimals, or as many
 digits on a logarithmic axis."""
@@ -235,7 +238,8 @@ def chart_data(name: str, chart: Chart, driver: str) -> dict[str, Any]:
         "own": own,
         "factor": factor,
         "range": [low, high],
-        "ends": chart.ends,
+        # the last tick is at the end, not beyond it
+        "ends": [[float(f"{one:.{_ENDS}g}") for one in ends] for ends in chart.ends],
         "lines": [
             {"label": one.label, "x": across(one.x), "y": up(one.y), "dots": one.dots}
             for one in chart.lines

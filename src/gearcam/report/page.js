@@ -258,7 +258,8 @@ function offer() {
   const teeth = scene.bodies.some((body) => body.teeth);
   const named = scene.bodies.some((body) => body.names.length);
   const forces = scene.largest_force && `forces in joints, up to ${scene.largest_force}`;
-  const own = [teeth, Boolean(scene.pitch), named, forces];
+  const members = membersOf(scene);
+  const own = [teeth, Boolean(scene.pitch), named, forces, members];
   const wanted = JSON.stringify([sets.toSorted(), [...dashed].sort(), ...own]);
   if (wanted === offered) return;
   offered = wanted;
@@ -276,6 +277,11 @@ function offer() {
     seen.lines[layer] ??= layer === "PATH";
     const text = LINES[layer] ?? layer.toLowerCase();
     check(home, text, seen.lines[layer], (on) => (seen.lines[layer] = on));
+  }
+  for (const [k, member] of members.length > 1 ? members.entries() : []) {
+    const { called } = scene.bodies.find((one) => one.name === member);
+    const row = add(home, "span", { class: "member" }, ` ${called}`);
+    row.prepend(sampleOf({ ink: "what", dash: DASHES[k % DASHES.length] }));
   }
   sides(sets, teeth || sets.some((name) => scene.contacts[name].teeth));
   home.hidden = !home.children.length;

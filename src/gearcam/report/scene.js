@@ -119,6 +119,10 @@ function tones(scene) {
   return own.map((name, k) => toneOf(name, scene.bodies[k]));
 }
 
+// Members of variants, which differ in dashes: bodies by their names, in order.
+const membersOf = ({ bodies }) => [...new Set(bodies
+  .filter((one) => one.variant !== undefined && one.name !== "frame").map((one) => one.name))];
+
 // A tooth of an outline, closed by its chord.
 function toothOf(outline, [first, last]) {
   const tooth = outline.slice(2 * first, first <= last ? 2 * last + 2 : undefined);
@@ -182,12 +186,16 @@ function* marksOf(scene, place, cycles, seen, pixel, edge = Infinity) {
   const found = touchingIn(scene, seen.contacts, place);
   const poses = posesOf(scene, place, cycles);
   const tone = tones(scene);
+  const members = membersOf(scene);
   // Contacts refer to the teeth of the first cycle, at their positions in it.
   const first = cycles ? posesOf(scene, place) : poses;
   const toothed = scene.bodies.filter((body) => body.teeth);
   for (const [k, body] of scene.bodies.entries()) {
     const faint = aside(seen, body.variant);
-    for (const mark of bodyMarks(body, poses[k], tone[k], pixel)) yield { ...mark, faint };
+    const dash = DASHES[Math.max(0, members.indexOf(body.name)) % DASHES.length];
+    for (const mark of bodyMarks(body, poses[k], tone[k], pixel)) {
+      yield { dash: mark.closed ? dash : undefined, ...mark, faint };
+    }
     const column = body.teeth && seen.carry ? columnOf(toothed, body) : -1;
     if (column < 0) continue;
     const chains = found
