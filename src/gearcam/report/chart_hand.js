@@ -16,6 +16,7 @@ class ChartHand {
     this.band = add(document.createElement("div"), "div", { class: "band" });
     const { tools, home } = view;
     this.zoom = add(tools, "button", { type: "button", "aria-pressed": "false" }, "Zoom");
+    this.zoom.title = "Then drag over a stretch of the axis; or hold Shift";
     this.whole = add(tools, "button", { type: "button" }, "Whole");
     this.zoom.addEventListener("click", () => this.choose(!this.choosing));
     this.whole.addEventListener("click", () => view.zoom(null));

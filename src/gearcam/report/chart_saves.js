@@ -12,6 +12,7 @@ function savesOf(view) {
     SVG: () => save(name("svg"), chartSvgOf(view), "image/svg+xml"),
     PNG: () => pictured(chartSvgOf(view), (blob) => save(name("png"), blob, "image/png")),
   };
+  view.tools.append(" Save ");
   return Object.entries(ways).map(([form, write]) => {
     const button = add(view.tools, "button", { type: "button", class: "save" }, form);
     button.addEventListener("click", write);

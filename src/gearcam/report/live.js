@@ -8,6 +8,7 @@
 
   // Numbers in the page that are not saved in the file, by key.
   let pending = {};
+  const SAVED = "Saved. Files that were built before are as they were: gearcam build makes them anew.";
   let told = ""; // beside the buttons when nothing is pending
   let over = false; // whether the server has ended, or was started again
   const rows = new Map();
@@ -205,7 +206,8 @@
   function enable() {
     const none = Object.keys(pending).length === 0;
     for (const id of ["save", "undo"]) document.getElementById(id).disabled = none || over;
-    const others = Object.entries(pending).filter(([key]) => !rows.has(key));
+    const shown = new Set([...rows.values()].flatMap(({ key }) => [key.key, ...key.same]));
+    const others = Object.entries(pending).filter(([key]) => !shown.has(key));
     const also = others.map(([key, value]) => ` ${key} = ${value}`).join(",");
     document.getElementById("saved").textContent = none ? told
       : also ? `Not saved, also${also}.` : "Not saved.";
@@ -283,16 +285,17 @@
     save.addEventListener("click", store);
     undo.addEventListener("click", back);
     const heading = element("h2", { id: "numbered", textContent: "Numbers in the design file" });
-    const ghost = element("button", { id: "ghost", type: "button", textContent: "Keep as a ghost" });
-    ghost.title = "Draw the design as it is now beneath what comes";
+    const ghost = element("button", { id: "ghost", type: "button", textContent: "Compare with this" });
+    ghost.title = "Draw the design as it is now, dotted, beneath what comes";
     ghost.setAttribute("aria-pressed", "false");
     ghost.addEventListener("click", () => freeze(ghost));
     const buttons = element("p", {}, save, " ", undo, " ", saved);
-    const hint = element("small", { textContent: "What is ringed in the picture, and the squares on "
-      + "charts, can be dragged; a number that is ticked is locked and stays as it is." });
+    const hint = element("p", { className: "hint", textContent: "Rings in the picture, seen when the "
+      + "pointer is there, and squares on charts can be dragged too. Tick a number to lock it." });
     const home = document.getElementById("numbers");
-    const more = window.gearcam.parts ? [element("p", {}, ghost), hint] : [];
-    home.replaceChildren(heading, ...groups.values(), buttons, ...more);
+    const drawn = Boolean(window.gearcam.parts);
+    buttons.append(...(drawn ? [" ", ghost] : []));
+    home.replaceChildren(heading, ...(drawn ? [hint] : []), ...groups.values(), buttons);
   }
 
   function freeze(button) {
@@ -305,7 +308,7 @@
     try {
       const reply = await post("save", { changes: pending, made });
       if (reply.error) tell(reply.error);
-      else document.getElementById("saved").textContent = told = "Saved.";
+      else document.getElementById("saved").textContent = told = SAVED;
     } catch {
       ended();
     }

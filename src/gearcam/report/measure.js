@@ -3,14 +3,14 @@
 
 const SNAP = 10; // pixels to a corner, a centre or a point of contact
 const KINDS = {
-  distance: { places: 2, unit: "mm" },
-  angle: { places: 3, unit: "deg" }, // the second is its corner
-  radius: { places: 3, unit: "mm" }, // of the circle through them
+  distance: { places: 2 },
+  angle: { places: 3 }, // the second is its corner
+  radius: { places: 3 }, // of the circle through them
 };
 
 class MeasureTool {
-  constructor(page, parts, home, redraw) {
-    Object.assign(this, { page, parts, home, redraw });
+  constructor(page, parts, home, asked, redraw) {
+    Object.assign(this, { page, parts, home, asked, redraw });
     this.kind = ""; // empty: the pointer moves the view
     this.picked = []; // places so far
     this.all = []; // measures: `kind`, `places`
@@ -117,6 +117,7 @@ class MeasureTool {
     this.rows = this.all.map((one) => {
       const row = add(this.home, "li", {}, `${one.kind} `);
       const value = add(row, "output");
+      row.append(" ");
       const button = add(row, "button", { type: "button", "aria-label": `Remove the ${one.kind}` }, "×");
       button.addEventListener("click", () => {
         this.all = this.all.filter((other) => other !== one);
@@ -130,6 +131,8 @@ class MeasureTool {
   }
 
   tell() {
+    const { places = 0 } = KINDS[this.kind] ?? {};
+    this.asked.textContent = places ? `click on ${places} places: ${this.picked.length} so far` : "";
     for (const [k, one] of this.all.entries()) {
       const text = measured(one.kind, this.spotsOf(one));
       if (this.rows[k].textContent !== text) this.rows[k].textContent = text;
@@ -201,7 +204,8 @@ function measured(kind, spots) {
   if (kind === "distance") return `${brief(Math.hypot(b.x - a.x, b.y - a.y), "mm")} mm`;
   if (kind === "radius") {
     const round = circleOf(spots);
-    return round ? `R ${brief(round.radius, "mm")} mm` : "in a line";
+    const [radius, wide] = round ? [round.radius, 2 * round.radius].map((one) => brief(one, "mm")) : [];
+    return round ? `R ${radius} mm, diameter ${wide} mm` : "in a line";
   }
   const way = ({ x, y }) => Math.atan2(y - b.y, x - b.x);
   const turn = Math.abs(way(c) - way(a)) % (2 * Math.PI);

@@ -3,6 +3,7 @@
 const CYCLE = 12; // seconds of a cycle at speed 1
 const EVEN = [0.05, 0.2, 0.5, 1, 2]; // speeds where the machine's is not known
 const SHARES = [1, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0005, 0.0002, 0.0001];
+const WIDER = 0.5; // of the view that follows the contact: so that the wheels are known again
 const LEAP = 20; // steps of the driver for Page Up and Page Down
 const STRIDES = 36; // steps in a cycle with reduced motion
 
@@ -43,7 +44,7 @@ const page = {
 
 const parts = new Parts(element("parts"), moved, draw);
 const charts = new Charts(element("charts"), page, element("further"));
-const measuring = new MeasureTool(page, parts, element("measures"), redraw);
+const measuring = new MeasureTool(page, parts, element("measures"), element("asked"), redraw);
 page.seen.marked = [(poses, pixel) => measuring.marks(poses, pixel)];
 page.tool = null; // of the picture, where nothing is measured
 
@@ -431,19 +432,24 @@ function reflect(spot) {
 // Go to the place, or to the tooth, that a text names, near enough to see it.
 function visit(text) {
   const { scene } = page;
-  const tooth = toothIn(text, scene);
-  const place = placeIn(text, scene) ?? tooth?.place;
+  const teeth = teethIn(text, scene);
+  const [tooth] = teeth;
+  page.seen.teeth = teeth;
+  const place = placeIn(text, scene) ?? (tooth && placeOfTooth(scene, tooth.body, tooth.tooth));
   if (place !== null && place !== undefined) go(place);
   if (tooth) {
     const pose = posesOf(scene, page.place)[tooth.body];
-    const { metal, teeth } = scene.bodies[tooth.body];
-    const points = toothOf(metal[0], teeth[tooth.tooth - 1]);
+    const { metal, teeth: ends } = scene.bodies[tooth.body];
+    const points = toothOf(metal[0], ends[tooth.tooth - 1]);
     const middle = 2 * Math.floor(0.25 * points.length);
     parts.fit();
     Object.assign(parts.view, placed(pose, points.slice(middle, middle + 2)));
     parts.view.scale *= closer(scene);
     parts.fitted = false;
-  } else if (meshAt(scene, page.place) && /phi1/.test(text)) parts.follow();
+  } else if (meshAt(scene, page.place) && /phi1/.test(text)) {
+    parts.follow();
+    parts.view.scale *= WIDER;
+  }
   page.changed();
   redraw();
   element("parts").scrollIntoView({ block: "nearest" });
@@ -453,8 +459,8 @@ function visit(text) {
 function enliven() {
   for (const one of document.querySelectorAll(".where")) {
     const text = one.textContent;
-    const leads = placeIn(text, page.scene) !== null || toothIn(text, page.scene);
-    one.classList.toggle("goes", Boolean(leads));
+    const leads = placeIn(text, page.scene) !== null || teethIn(text, page.scene).length > 0;
+    one.classList.toggle("goes", leads);
     if (!leads) continue;
     one.setAttribute("role", "link");
     one.tabIndex = 0;
@@ -465,6 +471,7 @@ function measure(kind) {
   measuring.choose(kind);
   parts.tool = kind ? measuring : page.tool;
   element("parts").classList.toggle("measuring", Boolean(kind));
+  measuring.tell();
 }
 
 // Have one variant stand out from the others, or none.

@@ -87,6 +87,21 @@ NO_SOLIDS: Final = ("no_solids.js",)
 
 _HOME: Final = Path(__file__).parent
 
+_USES: Final = {
+    "dxf": "outlines to cut",
+    "svg": "a drawing",
+    "pdf": "a drawing",
+    "stl": "solids to print",
+    "3mf": "solids to print",
+    "step": "solids for CAD",
+    "glb": "solids to look at",
+    "csv": "a table",
+    "nc": "a program for a milling machine",
+    "ngc": "a program for a milling machine",
+    "json": "all numbers",
+}
+"""What files are for, by the end of their names."""
+
 _VERDICTS: Final = {
     "error": "Do not cut this yet",
     "warning": "Look before you cut",
@@ -325,6 +340,7 @@ def blocks(
         result.findings,
         remedies=remedies(result) if seek else Remedies(),
         files={name: size_of(size) for name, size in result.sizes.items()},
+        uses={name: _USES.get(name.rpartition(".")[2], "") for name in result.sizes},
         errors=[*_errors(result, facts)],
         pictures=[*_pictures(result)],
     )

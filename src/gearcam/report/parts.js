@@ -22,6 +22,7 @@ function palette(paper = false) {
 
 const traced = new WeakMap(); // paths of chains with the step that they were traced with
 const STEP = 0.35; // pixels: points that are closer are merged
+const SMALLEST = 0.6; // share of the view that a changed scene fills, or the view changes
 const NARROW = 500; // pixels: on a narrower picture contacts are marked smaller
 
 // Outlines have many points and never change; zoomed out, few of the points suffice.
@@ -79,10 +80,11 @@ class Parts {
     };
   }
 
-  // The view stays where it is while a tool holds something in it.
+  // The view stays where it is while a tool holds something in it, or a changed scene fits.
   set scene(scene) {
+    const before = this.own;
     this.own = scene;
-    if (this.held !== null) return;
+    if (this.held !== null || (before && this.fitted && this.fits)) return;
     const [left, bottom, right, top] = scene.box;
     const shape = (right - left) / (top - bottom);
     // a scene that is very flat gets a flatter canvas, with room to zoom
@@ -90,6 +92,17 @@ class Parts {
     this.canvas.style.setProperty("--own", shape); // which paper gives it
     this.canvas.style.setProperty("--shape", Math.min(flat, Math.max(0.8, shape)));
     if (this.fitted) this.fit();
+  }
+
+  // Whether the view shows all of the scene, at a size that is not too small for it.
+  get fits() {
+    const [left, bottom, right, top] = this.own.box;
+    const { width, height } = this.size;
+    const { x, y, scale } = this.view;
+    const [wide, tall] = [width / scale, height / scale];
+    const inside = left > x - 0.5 * wide && right < x + 0.5 * wide
+      && bottom > y - 0.5 * tall && top < y + 0.5 * tall;
+    return inside && Math.max((right - left) / wide, (top - bottom) / tall) > SMALLEST;
   }
 
   get size() {

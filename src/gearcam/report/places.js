@@ -10,14 +10,17 @@ function placeIn(text, { driver, places }) {
   return place >= places[0] && place <= places.at(-1) ? place : null;
 }
 
-// The tooth that a text names: its body, its number, and where in the motion it is in contact.
-function toothIn(text, scene) {
-  const said = text.match(/wheel (\d)[^,]*, t(?:ooth|eeth) (\d+)/);
-  if (!said) return null;
+// The teeth that a text names, such as "wheel 2, teeth 15, 17-18": each its body and its number.
+function teethIn(text, scene) {
+  const said = text.match(/wheel (\d)[^,]*, t(?:ooth|eeth) ([\d, -]+)/);
+  if (!said) return [];
   const body = scene.bodies.findIndex((one) => one.teeth && one.name.endsWith(`gear${said[1]}`));
-  const tooth = Number(said[2]);
-  if (body < 0 || !scene.bodies[body].teeth[tooth - 1]) return null;
-  return { body, tooth, place: placeOfTooth(scene, body, tooth) };
+  if (body < 0) return [];
+  const numbers = said[2].split(",").flatMap((part) => {
+    const [first, last = first] = part.trim().split("-").map(Number);
+    return Array.from({ length: last - first + 1 }, (_, k) => first + k);
+  });
+  return numbers.filter((tooth) => scene.bodies[body].teeth[tooth - 1]).map((tooth) => ({ body, tooth }));
 }
 
 // The middle of the places at which a tooth is in contact; null if it is not.

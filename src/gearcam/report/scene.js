@@ -194,7 +194,7 @@ function* marksOf(scene, place, cycles, seen, pixel, edge = Infinity) {
     const faint = aside(seen, body.variant);
     const dash = DASHES[Math.max(0, members.indexOf(body.name)) % DASHES.length];
     for (const mark of bodyMarks(body, poses[k], tone[k], pixel)) {
-      yield { dash: mark.closed ? dash : undefined, ...mark, faint };
+      yield { dash: mark.closed && dash.length ? dash : undefined, ...mark, faint };
     }
     const column = body.teeth && seen.carry ? columnOf(toothed, body) : -1;
     if (column < 0) continue;
@@ -215,7 +215,13 @@ function* marksOf(scene, place, cycles, seen, pixel, edge = Infinity) {
   for (const k of seen.lit ?? []) {
     const { metal, lines } = scene.bodies[k] ?? { metal: [], lines: [] };
     const chains = [...metal, ...lines.filter((one) => !one.dashed && one.closed).map((one) => one.points)];
-    yield { chains, closed: true, ink: "accent", width: 3, pose: poses[k] };
+    yield { chains, closed: true, ink: "contact", width: 2.5, pose: poses[k] };
+  }
+  for (const { body, tooth } of seen.teeth ?? []) {
+    const { metal, teeth } = scene.bodies[body] ?? {};
+    if (!teeth?.[tooth - 1]) continue;
+    const chains = [toothOf(metal[0], teeth[tooth - 1])];
+    yield { chains, closed: true, ink: "contact", width: 3, pose: poses[body] };
   }
   for (const marks of seen.marked ?? []) yield* marks(poses, pixel);
 }

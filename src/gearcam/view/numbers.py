@@ -75,8 +75,8 @@ def sliders(
     list of dict
         For each number that can be changed, alone or with what has to follow it: ``key``,
         ``group``, ``label``, ``doc``, ``unit``, ``value``, ``low``, ``high``, ``step``,
-        ``integer``; ``least`` and ``most``, all that its key allows, or null. Numbers that are
-        always equal to another one of their list have no slider of their own: the label of the
+        ``integer``; ``least`` and ``most``, all that its key allows, or null; ``same``, the
+        keys of numbers that are always equal to it. Numbers that are always equal to another one of their list have no slider of their own: the label of the
         first one tells of them.
     """
     document, values = document_in(text, ""), numbers(text)
@@ -115,6 +115,7 @@ def sliders(
                     "step": step,
                     **_bounds(entry, step),
                     "integer": entry.base is int,
+                    "same": [dotted(one) for one in same],
                 }
             )
     return sliders
