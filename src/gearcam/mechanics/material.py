@@ -21,7 +21,7 @@ data sheets (plastics, solid, at room temperature). Strength depends on the grad
 
 
 def _both(quantity: Any, example: Any, *, doc: str, **bounds: Any) -> Any:
-    more = {"both": True, "order": "driver or cam and driven wheel or roller", "example": example}
+    more = {"both": True, "order": "first part and second part", "example": example}
     return param(quantity, default=None, doc=doc, **more, **bounds)
 
 
@@ -57,7 +57,7 @@ class MaterialSpec(ShortRepr):
         MPA,
         default=None,
         both=True,
-        order="driver or cam and driven wheel or roller",
+        order="first part and second part",
         word="yield",
         gt=0,
         le=1e5,
