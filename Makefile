@@ -10,7 +10,8 @@
 # make growth     measure time and memory against the size of designs; write growth.md
 # make accuracy   measure error against run time of several methods; write accuracy.md
 # make peers      compare tooth flanks and motions with those of other packages
-# make fuzz       test with random designs: MORE="--count N --seed N ..." (--help lists more)
+# make fuzz       test with random designs: MORE="--count N --seed N ..." (--help lists more);
+#                 write their score into docs/validation.md
 # make compare    compare random designs with those of an older commit: BASE=COMMIT [N=50] [SEED=1]
 # make lock       renew requirements.lock
 # make clean      remove environments, caches and output
@@ -74,7 +75,7 @@ accuracy: $(VENV)/.bench
 	$(BIN)/python benchmarks/accuracy/run.py
 
 fuzz: $(VENV)/.test
-	PYTHONPATH=tests $(BIN)/python -m fuzz $(MORE)
+	PYTHONPATH=tests:tools $(BIN)/python -m fuzz --score docs/validation.md $(MORE)
 
 compare: $(VENV)/.test
 	PYTHONPATH=tests $(BIN)/python tools/compare.py $(BASE) --count $(or $(N),50) --seed $(or $(SEED),1) $(MORE)

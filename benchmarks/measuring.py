@@ -15,7 +15,10 @@ from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tools"))
+
+from commit import ROOT, commit
+
 _UNCOMPILED = "PYTHONDONTWRITEBYTECODE"
 PACKAGES = (
     "gearcam", "numpy", "shapely", "ncgears", "pylinkage", "numba", "opentorsion", "exudyn",
@@ -131,7 +134,7 @@ def environment(named: Sequence[str] = PACKAGES) -> list[str]:
     return [
         f"- machine: {_processor()}, {os.cpu_count()} cores, {system}",
         f"- Python {sys.version.split()[0]}; {packages}",
-        f"- commit {_commit()}",
+        f"- commit {commit()}",
         f"- {datetime.now(UTC):%Y-%m-%d %H:%M} UTC",
     ]
 
@@ -143,14 +146,3 @@ def _processor() -> str:
             if line.startswith("model name"):
                 return line.partition(":")[2].strip()
     return platform.processor() or platform.machine()
-
-
-def _commit() -> str:
-    def git(*arguments: str) -> str:
-        done = subprocess.run(
-            ["git", *arguments], cwd=ROOT, check=False, capture_output=True, text=True
-        )
-        return done.stdout.strip() if done.returncode == 0 else ""
-
-    changed = " with uncommitted changes" if git("status", "--porcelain", "src") else ""
-    return (git("rev-parse", "--short=12", "HEAD") or "none yet") + changed

@@ -56,6 +56,11 @@ class Case:
         """The design."""
         return design(self.kind, self.seed, self.index)
 
+    @property
+    def meant(self) -> str:
+        """What the design is meant to be."""
+        return _BROKEN if self.drawn.broken else _WHOLE
+
     def task(self, files: Files | None = None) -> Task:
         """Return the task for the design, or for other `files` with the same settings."""
         d = Draw(f"trial of {self.name}")
@@ -140,8 +145,7 @@ class Campaign:
         return ((number, self.cases[number].task()) for number in numbers)
 
     def _take(self, case: Case, outcome: Outcome) -> None:
-        drawn = _BROKEN if case.drawn.broken else _WHOLE
-        self.counts[case.kind, drawn, outcome.end] += 1
+        self.counts[case.kind, case.meant, outcome.end] += 1
         self.seconds += outcome.seconds
         self.doubted += outcome.doubted
         self.followed += outcome.followed

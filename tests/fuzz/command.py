@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import os
-from argparse import ArgumentParser
+from argparse import ArgumentParser, ArgumentTypeError
 from collections.abc import Sequence
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Final
 
+from commit import commit
 from fuzz.campaign import Campaign, Case, Catch
 from fuzz.pool import Pool
+from fuzz.score import BEGIN, END, Score, lacks_marks, publish
 from fuzz.trial import tried
 from gearcam.console import complain, progress_bar, say, visible
+from gearcam.version import __version__
 from random_designs.designs import MAKERS
 
 QUICK: Final = 40
@@ -48,6 +52,8 @@ def main(words: Sequence[str] | None = None) -> int:
             with progress_bar("fuzz") as progress:
                 for found in campaign.run(progress):
                     complain(f"{found.case.name}: {found.failure.kind}: {found.failure.words}")
+            if given.score:
+                _publish(campaign, given.score, partial=bool(given.quick or given.only))
             _save(campaign, Path(given.output))
         finally:  # also after an interruption
             for line in campaign.lines():
@@ -71,6 +77,8 @@ def _parser() -> ArgumentParser:
     parser.add_argument(
         "--jobs", type=_positive, default=os.cpu_count() or 1, metavar="N", help=words
     )
+    words = "page that the score is written to, if designs of all kinds are tried, without --quick"
+    parser.add_argument("--score", type=_page, metavar="PAGE", help=words)
     words = "where designs that reveal a bug are saved (default: output/fuzz)"
     parser.add_argument("-o", "--output", default="output/fuzz", metavar="DIR", help=words)
     return parser
@@ -82,6 +90,29 @@ def _positive(word: str) -> int:
     if number < 1:
         raise ValueError(word)
     return number
+
+
+def _page(word: str) -> Path:
+    """Return the path of a page with the marks, seen before anything is tried."""
+    path = Path(word)
+    try:
+        lacking = lacks_marks(path.read_text("utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        raise ArgumentTypeError(f"{word}: cannot be read: {error}") from error
+    if lacking:
+        raise ArgumentTypeError(f"{word}: it needs one line {BEGIN}, and below it {END}")
+    return path
+
+
+def _publish(campaign: Campaign, page: Path, *, partial: bool) -> None:
+    """Write the score into a page, unless only some designs were asked for."""
+    if partial or {case.kind for case in campaign.cases} != {*MAKERS}:
+        say(f"{page}: not changed; only designs of all kinds, without --quick, are published")
+        return
+    day = datetime.now(UTC).date()
+    score = Score(campaign=campaign, version=__version__, commit=commit(), day=day)
+    publish(page, score.block())
+    say(f"{page}: score written")
 
 
 def _save(campaign: Campaign, folder: Path) -> None:
