@@ -125,7 +125,9 @@ def test_a_joint_follows_the_pointer_and_curves_move(page: Chrome) -> None:
 def test_a_locked_number_stays_and_others_move(page: Chrome) -> None:
     page.execute_script("gearcam.go(40)")
     locked = "point[0].at_mm[0]"
-    page.find_element(By.CSS_SELECTOR, f'[aria-label="lock {locked}"]').click()
+    lock = page.find_element(By.CSS_SELECTOR, f'[aria-label="lock {locked}"]')
+    page.execute_script("arguments[0].scrollIntoView({ block: 'center' })", lock)
+    lock.click()
     before = values(page)
     home, at = taken(page, 2, "P")
     drag(page, home, at, (20, -15))

@@ -132,21 +132,27 @@ def test_distances_snap_to_corners_and_centres_and_stay_with_their_bodies(
     assert told(opened) == "First place: a corner. Pick the second."
     click(opened, *front2)
 
-    def expected() -> str:
+    def expected() -> float:
         ends = [
             matrix(opened, name) @ [*point, 1.0]
             for name, point in (("gear1", corner), ("gear2", (0.0, 0.0, WIDTH)))
         ]
-        return f"{np.linalg.norm(ends[0] - ends[1]):.2f} mm"
+        return float(np.linalg.norm(ends[0] - ends[1]))
 
-    assert labels(opened)[1] == expected()
+    # corners of a tip are closer than a millimetre
+    def near(text: str) -> bool:
+        return abs(float(text.removesuffix(" mm")) - expected()) < 1.0
+
+    assert near(labels(opened)[1])
     before, place = expected(), part(opened, ".marks span:last-child").rect
     go(opened, 120.0)
-    assert labels(opened) == [f"{DISTANCE:.2f} mm", expected()]
-    assert expected() != before
+    assert labels(opened)[0] == f"{DISTANCE:.2f} mm"
+    assert near(labels(opened)[1])
+    assert abs(expected() - before) > 2.0
     assert part(opened, ".marks span:last-child").rect["y"] != pytest.approx(place["y"], abs=5)
     part(opened, ".marks span button").click()
-    assert labels(opened) == [expected()]
+    assert len(labels(opened)) == 1
+    assert near(labels(opened)[0])
     click(opened, 3, 3)
     assert told(opened) == "There is no solid at this place."
 

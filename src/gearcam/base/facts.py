@@ -371,12 +371,11 @@ class Facts(Mapping[str, Any]):
         yield from map(self.quantity, self._headline)
         yield from (one for one in self.shown() if one.name not in self._headline)
 
-    @cached_property
-    def main(self) -> tuple[NamedFact, ...]:
-        """A dozen of the quantities that are always shown: those with limits before others."""
+    def main(self) -> Iterator[NamedFact]:
+        """Yield a dozen of the quantities that are always shown: those with limits first chosen."""
         rows = [one for one in self.shown() if one.text and one.name not in self._headline]
         chosen = sorted(rows, key=lambda one: not one.limit)[:_MAIN]
-        return tuple(one for one in rows if one in chosen)
+        return (one for one in rows if one in chosen)
 
     def quantity(self, name: str) -> NamedFact:
         """Return the quantity with a dotted `name`, or that repeats a key of this name."""

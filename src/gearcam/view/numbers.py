@@ -75,9 +75,9 @@ def sliders(
     list of dict
         For each number that can be changed, alone or with what has to follow it: ``key``,
         ``group``, ``label``, ``doc``, ``unit``, ``value``, ``low``, ``high``, ``step``,
-        ``integer``; ``least`` and ``most``, all that its key allows, or null; ``same``, the
-        keys of numbers that are always equal to it. Numbers that are always equal to another one of their list have no slider of their own: the label of the
-        first one tells of them.
+        ``integer``; ``least`` and ``most``, all that its key allows, or null; ``same``, the keys of
+        numbers that are always equal to it. These have no slider of their own: its label tells of
+        them.
     """
     document, values = document_in(text, ""), numbers(text)
     sliders: list[dict[str, Any]] = []

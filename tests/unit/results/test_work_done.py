@@ -215,7 +215,11 @@ EXPECTED: dict[tuple[str, Callable[[str, Path], None]], dict[str, int]] = {
         **{name: 2 * count for name, count in (PAIR | BOTH_SIDES | CHARTED).items()},
         "run_checks": 2, "make_part": 4, "scene_data": 1,
     },
-    ("ellipse", view): {**PAIR, **BOTH_SIDES, **CHARTED, "run_checks": 1, "make_part": 2},
+    ("ellipse", view): {
+        **PAIR, **BOTH_SIDES, **CHARTED, "run_checks": 1, "make_part": 2,
+        # and for each number, to see whether a design can be made with another value
+        "roll": 1 + 5,
+    },
     ("plate_cam_offset_roller", build): {
         **WALL, **RANGES, **SUMMARY,
         # of the cam, and of the part
@@ -240,6 +244,7 @@ EXPECTED: dict[tuple[str, Callable[[str, Path], None]], dict[str, int]] = {
     ("plate_cam_offset_roller", view): {
         **WALL, **RANGES, "run_checks": 2, "make_part": 1, "tool_limits": 1, "Sampler.dense": 1,
         "Sampler.chords": 2, "cam_drawing": 1, "scene_data": 1,
+        "make_program": 1 + 5,  # as of the pair: for each number
     },
     ("groove_cam", check): {
         # both walls, and the pitch curve that the groove is cut along
