@@ -341,3 +341,27 @@ def test_what_a_document_tells_is_no_markup(
     assert browser.execute_script("return window.bad") is None
     for told in (".chart h3", ".chart .unit", ".chart .legend li", "#side option", "#told"):
         assert "</script>" in browser.find_element(By.CSS_SELECTOR, told).text
+
+
+COVERED = """
+const covered = [];
+for (const one of document.querySelectorAll("#rest > section")) {
+  if (!one.clientHeight) continue;
+  one.scrollIntoView({ block: "center" });
+  const { left, top, width, height } = one.getBoundingClientRect();
+  for (const share of [0.1, 0.35, 0.5, 0.65, 0.9]) {
+    const seen = document.elementFromPoint(left + share * width, top + Math.min(0.5 * height, 200));
+    if (!one.contains(seen)) covered.push(`${one.id} at ${share} by ${seen?.id}`);
+  }
+}
+return covered;
+"""
+
+
+@pytest.mark.parametrize("size", [(1500, 950), (1100, 800), PHONE])
+@pytest.mark.parametrize("name", [NAIL, "plate_cam_oscillating"])
+def test_no_block_is_covered_by_another(
+    name: str, size: tuple[int, int], browser: Chrome, page_of: BuildOutput
+) -> None:
+    open_page(browser, page_of(name), size)
+    assert browser.execute_script(COVERED) == []

@@ -254,8 +254,9 @@ def _shown(result: Result, scene: Scene) -> dict[str, Any]:
     """Return the data of a scene with the speed of its driver, rpm; None where it has none."""
     drive = getattr(result.design, "drive", None)
     speed = getattr(drive[0] if isinstance(drive, tuple) and drive else drive, "speed", None)
-    turns = scene.driver.endswith(", deg") and speed
-    return scene_data(scene) | {"rpm": speed * 30.0 / math.pi if turns else None}
+    turns = scene.driver.endswith(", deg")
+    rpm = None if speed is None or not turns else speed * 30.0 / math.pi
+    return scene_data(scene) | {"rpm": rpm}
 
 
 def draft(result: Result) -> dict[str, Any]:
