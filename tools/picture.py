@@ -124,7 +124,7 @@ if __name__ == "__main__":
     with TemporaryDirectory() as folder:
         PICTURE.write_bytes(taken(report(PROFILE, folder), PLACE))
         cam = report(PROFILES / "plate_cam_offset_roller.toml", folder)
-        (PICTURES / "report.png").write_bytes(taken(cam, 60.0, (1100, 1000)))
+        (PICTURES / "report.png").write_bytes(taken(cam, 60.0, (1500, 950)))
         drum = report(PROFILES / "cylinder_cam.toml", folder)
         (PICTURES / "cylinder_cam.png").write_bytes(taken(drum, 60.0, (1100, 4000), solid=True))
         table = report(PROFILES / "globoidal_indexer.toml", folder)
