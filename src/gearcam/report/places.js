@@ -36,7 +36,7 @@ function placeOfTooth(scene, body, tooth) {
 
 // The bodies, by index, whose part, name, or joint a text names.
 function bodiesIn(text, { bodies }) {
-  const words = (name) => new RegExp(`(^|[^\\w])${RegExp.escape?.(name) ?? escapedName(name)}($|[^\\w])`);
+  const words = (name) => new RegExp(`(^|[^\\w])${escapedName(name)}($|[^\\w])`);
   const numbered = text.match(/wheel (\d)/);
   return bodies.flatMap((body, k) => {
     if (body.name === "frame") return [];
