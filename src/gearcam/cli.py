@@ -174,8 +174,8 @@ class _Top(argparse.ArgumentParser):
     """The parser of the command line, whose help lists the commands."""
 
     def format_help(self) -> str:
-        commands = [f"  {one.name:<10}{one.doc}" for one in _commands()]
-        codes = [f"  {code:<10}{meaning}" for code, meaning in EXIT_CODES.items()]
+        commands = [f"  {one.name:<11}{one.doc}" for one in _commands()]
+        codes = [f"  {code:<11}{meaning}" for code, meaning in EXIT_CODES.items()]
         more = "DIR is the output folder, NAME the name of the design."
         more += "\ngearcam COMMAND --help explains the options of a command."
         self.epilog = "\n".join(["commands:", *commands, "", more, "", "exit codes:", *codes])

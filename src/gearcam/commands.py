@@ -22,11 +22,13 @@ from gearcam.console import (
     answer,
     complain,
     fault_text,
+    finding_lines,
     problem_text,
     progress_bar,
     refusal_text,
     remedy_lines,
     say,
+    silent,
 )
 
 if TYPE_CHECKING:
@@ -177,7 +179,10 @@ def _act(result: Result, file: str, done: str, action: Action, start: float) -> 
     if written.interrupted:
         complain(f"{file}: interrupted: {written.interrupted} were written")
         return INTERRUPTED
-    errors = any(finding.severity == "error" for finding in written.findings)
+    errors = [finding for finding in written.findings if finding.severity == "error"]
+    if errors and silent():
+        complain(f"{file}: {done}, with errors")
+        complain(textwrap.indent("\n".join(finding_lines(errors)), "  "))
     for line in remedy_lines(remedies(result)) if errors else ():
         say(f"  {line}")
     return FINDINGS if errors else GOOD

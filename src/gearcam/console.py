@@ -225,6 +225,11 @@ def talking(*, quiet: bool, aside: bool) -> Iterator[None]:
         _Talk.stream = before
 
 
+def silent() -> bool:
+    """Return whether a command is to print errors only."""
+    return not _Talk.stream
+
+
 def say(text: str) -> None:
     """Print to stdout, or where a command is `talking`."""
     if _Talk.stream:

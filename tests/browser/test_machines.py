@@ -172,9 +172,9 @@ def test_the_place_is_told_with_the_name_of_the_output(
         open_page(browser, page_of(name))
         go(browser, 0.0)
         words[name] = browser.find_element(By.ID, "told").text.partition(", ")[2]
-    assert words["nail_machine_slide"].startswith("pair: place of slide = ")
-    assert words["lathe_levers"].startswith("place of slide = ")
-    assert words[BAR].startswith("P_x: place = ")
+    assert words["nail_machine_slide"].startswith("pair: position of slide = ")
+    assert words["lathe_levers"].startswith("position of slide = ")
+    assert words[BAR].startswith("P_x: position = ")
 
 
 def test_wheels_and_links_move_together(browser: Chrome, page_of: BuildOutput) -> None:

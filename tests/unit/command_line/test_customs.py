@@ -156,6 +156,12 @@ def test_quiet_prints_errors_only(typed: Any, capsys: pytest.CaptureFixture[str]
     assert capsys.readouterr() == ("", "")
     assert main(["check", "none.toml", "-q"]) == 2
     assert "there is no such file" in capsys.readouterr().err
+    # findings are errors too
+    assert main(["check", CAM.replace("eccentric_cam", "undercut_cam"), "-q"]) == 1
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert "checked, with errors" in err
+    assert "error  undercut" in err
     assert main(["check", CAM, "-q", "--json"]) == 0
     out, err = capsys.readouterr()
     assert json.loads(out)["name"] == "eccentric_cam"
