@@ -28,6 +28,7 @@ GROUPS: Final = {
     "teeth": "Law, centrodes and teeth",
     "meshing": "Meshing study (`gearcam mesh`)",
     "errors": "Errors of mounting and making (`gearcam errors`)",
+    "random assemblies of a pair": "Random assemblies (`gearcam errors`)",
     "forces of a pair": "Forces (`gearcam forces`)",
     "stress of a pair": "Stress (`gearcam stress`)",
     "dynamics of a machine": "Motion under a motor (`gearcam dynamics`)",

@@ -20,6 +20,7 @@ from typing import Any, Final
 
 from gearcam.base.display import ShortRepr, line, renderer
 from gearcam.base.errors import demand_finite
+from gearcam.base.near_names import UnknownNameError
 from gearcam.base.numerals import formatted
 from gearcam.base.readable import (
     ERROR_DIGITS,
@@ -31,7 +32,7 @@ from gearcam.base.readable import (
     readable,
     scale_for,
 )
-from gearcam.base.two_names import fact_of
+from gearcam.base.two_names import spellings
 
 Tree = dict[str, Any]
 """Facts by key: plain values, `Fact`, lists and groups of them."""
@@ -343,10 +344,11 @@ class Facts(Mapping[str, Any]):
         return _bare(self._tree)
 
     def __getitem__(self, name: str) -> Any:
-        for one in (name, fact_of(self._repeated, name)):
+        others = spellings(self._repeated, name) if isinstance(name, str) else ()
+        for one in (name, *others):
             with suppress(LookupError, TypeError, ValueError, StopIteration):
                 return _at(self.document, one)
-        raise KeyError(name)
+        raise UnknownNameError(name, self._names)
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._named)
@@ -357,6 +359,11 @@ class Facts(Mapping[str, Any]):
     @cached_property
     def _named(self) -> dict[str, NamedFact]:
         return {name: _quantity(name, fact) for name, fact in _leaves(self._tree)}
+
+    @cached_property
+    def _names(self) -> list[str]:
+        """All names, with those of the ends of ranges and of places in lists."""
+        return list(dict.fromkeys([*self, *self.record()]))
 
     def quantities(self) -> Iterator[NamedFact]:
         """Yield all quantities in the order of the tree."""
@@ -379,7 +386,10 @@ class Facts(Mapping[str, Any]):
 
     def quantity(self, name: str) -> NamedFact:
         """Return the quantity with a dotted `name`, or that repeats a key of this name."""
-        return self._named[name if name in self._named else fact_of(self._repeated, name)]
+        for one in (name, *spellings(self._repeated, name)):
+            if one in self._named:
+                return self._named[one]
+        raise UnknownNameError(name, self._names)
 
     def record(self) -> dict[str, float | str]:
         """Return all quantities as plain numbers and texts by dotted names (`Result.record`)."""

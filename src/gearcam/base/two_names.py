@@ -6,7 +6,12 @@ kind of design gives the keys by the facts; a name may stand for all that begin 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Mapping
+from typing import Final
+
+_PLACE: Final = re.compile(r"\[(\d+)\]")
+"""The place in a list in brackets, as in keys: ``gears[0].size_mm``."""
 
 
 def key_of(keys: Mapping[str, str], name: str) -> str:
@@ -20,3 +25,11 @@ def key_of(keys: Mapping[str, str], name: str) -> str:
 def fact_of(keys: Mapping[str, str], name: str) -> str:
     """Return the fact that repeats the key `name`, of `keys` by facts; else the name itself."""
     return key_of({key: fact for fact, key in keys.items()}, name)
+
+
+def spellings(keys: Mapping[str, str], name: str) -> Iterator[str]:
+    """Yield the other names of what `name` names: the fact, the key, places without brackets."""
+    plain = _PLACE.sub(r".\1", name)
+    for one in (name, plain):
+        yield from (fact_of(keys, one), key_of(keys, one))
+    yield plain

@@ -22,6 +22,9 @@ KIND = "meshing"
 ERRORS = "errors"
 """Registered checks of a study of errors."""
 
+TRIALS = "random assemblies of a pair"
+"""Registered checks of the random assemblies of a study of errors."""
+
 FORCES = "forces of a pair"
 """Registered checks of a study of forces."""
 

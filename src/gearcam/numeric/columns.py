@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gearcam.base.display import line
+from gearcam.base.near_names import UnknownNameError
 from gearcam.numeric.arrays import Array
 
 
@@ -42,6 +43,9 @@ class Columns(dict[str, NDArray[Any]]):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (dict(self),)
+
+    def __missing__(self, name: str) -> NDArray[Any]:
+        raise UnknownNameError(name, self)
 
     def __repr__(self) -> str:
         rows = len(next(iter(self.values()), ()))

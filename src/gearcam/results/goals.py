@@ -2,18 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Mapping
-from typing import Any, Final
+from typing import Any
 
 from gearcam.base.errors import DesignError, Problem
+from gearcam.base.near_names import near_names
 from gearcam.designs.faults import show
-
-_LISTED: Final = 3
-"""Largest number of facts that are named for one that there is not."""
-
-_LEAST: Final = 0.5
-"""Least similarity of their names."""
 
 
 def goals_of(design: Any) -> Mapping[str, float]:
@@ -47,8 +41,7 @@ def _no_goal(
     name: str, sign: float, numbers: list[str], facts: Mapping[str, float | str]
 ) -> Problem:
     """Return why a goal is not a number among facts."""
-    near = [one for one in numbers if one.startswith(f"{name}.")][:_LISTED]
-    near = near or difflib.get_close_matches(name, numbers, n=_LISTED, cutoff=_LEAST)
+    near = near_names(name, numbers)
     message = f"{show(name)} is no fact of this design"
     if name.startswith("accuracy."):
         message, near = f"{show(name)} is an estimated error", []

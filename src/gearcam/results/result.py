@@ -24,6 +24,7 @@ from gearcam.base.registry import deferred
 from gearcam.base.tolerances import DEFAULT, Tolerances
 from gearcam.numeric.arguments import one_of, refused
 from gearcam.results.goals import demand_facts, goals_of
+from gearcam.results.record import Record
 from gearcam.results.staged import Staged
 from gearcam.results.study import Progress, StudyResult, merged, silent
 from gearcam.results.written import BuildOutput, demand_formats
@@ -327,11 +328,12 @@ class Result(Staged):
         [1.222, 1.857]
         """
         facts = self._with_studies(self.facts_without_accuracy)
-        row = {"name": self.design.name, "kind": self.design.kind, **facts.record()}
+        row = Record({"name": self.design.name, "kind": self.design.kind, **facts.record()})
         findings = self.findings_without_hints
         for word in ("error", "warning", "note"):
             row[f"findings.{word}s"] = sum(one.severity == word for one in findings)
-        return row | {"findings.codes": ", ".join(dict.fromkeys(one.code for one in findings))}
+        row["findings.codes"] = ", ".join(dict.fromkeys(one.code for one in findings))
+        return row
 
     def to_dict(self) -> dict[str, Any]:
         """Return the content of ``summary.json`` without the list of files.

@@ -66,8 +66,8 @@ class Plan(ShortRepr):
     seed: int = 1
 
     def __post_init__(self) -> None:
-        names = KINDS[self.base.kind].repeated  # a fact that repeats a key stands for it
-        axes = tuple(replace(one, key=key_of(names, one.key)) for one in self.axes)
+        # a fact that repeats a key stands for it
+        axes = tuple(replace(one, key=key_of(self.repeated, one.key)) for one in self.axes)
         object.__setattr__(self, "axes", axes)
         problems = [
             Problem(
@@ -81,7 +81,13 @@ class Plan(ShortRepr):
         if problems:
             raise DesignError(problems)
         for axis in self.axes:
-            self._demand_key(axis)
+            self._demand_whole(axis)
+        self._demand_keys()
+
+    @property
+    def repeated(self) -> Mapping[str, str]:
+        """Keys of the design that facts repeat, by these facts."""
+        return KINDS[self.base.kind].repeated
 
     @property
     def count(self) -> int:
@@ -113,22 +119,34 @@ class Plan(ShortRepr):
         least, largest = self._wholes[axis.key]
         return min(max(round(value), least), largest)
 
-    def _demand_key(self, axis: Varied) -> None:
-        """Refuse a key of which no value is allowed: it does not exist, or its values are wrong."""
+    def _demand_whole(self, axis: Varied) -> None:
+        """Refuse a range of whole numbers without one."""
         least, largest = self._wholes.get(axis.key, (0, 0))
         if least > largest:
             message = f"there is no whole number in {axis.text}"
             raise DesignError.of(message, key=axis.key, allowed="a wider range")
+
+    def _demand_keys(self) -> None:
+        """Refuse keys of which no value is allowed: they do not exist, or their values are wrong.
+
+        Values that are allowed together are enough, as one may need another: a centre distance
+        instead of a module. Otherwise some value of each key has to be allowed alone.
+        """
+        together = self._refusal(self.axes)
+        if together is not None and any(self._refusal([axis]) for axis in self.axes):
+            raise together
+
+    def _refusal(self, axes: Sequence[Varied]) -> DesignError | None:
+        """Return why the first values of some axes are refused; None if others are allowed."""
         first: DesignError | None = None
         for u in _LOOKS:
             try:
-                self.base.with_({axis.key: self._value(axis, u)})
+                self.base.with_({axis.key: self._value(axis, u) for axis in axes})
             except DesignError as error:
                 first = first or error
             else:
-                return
-        if first is not None:
-            raise first
+                return None
+        return first
 
     @cached_property
     def _wholes(self) -> dict[str, tuple[int, int]]:

@@ -12,6 +12,7 @@ from gearcam.base.errors import GearcamError
 from gearcam.base.findings import Finding
 from gearcam.designs.design import Design
 from gearcam.kinds import build
+from gearcam.results.record import Record
 
 TOO_LARGE: Final = "it needs more memory than a variant may have"
 
@@ -53,6 +54,11 @@ class Built(ShortRepr):
     refusal: str = ""
     fault: bool = False
     time_s: float = 0.0
+
+    def __post_init__(self) -> None:
+        facts = Record(self.facts)
+        facts.refusal = self.refusal
+        object.__setattr__(self, "facts", facts)
 
     @property
     def made(self) -> bool:

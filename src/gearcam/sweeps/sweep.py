@@ -156,11 +156,12 @@ class Sweep:
 
         ``number``; the values by their keys; the facts by their names; ``findings``, their codes;
         ``errors``, how many of them are errors; ``refusal``, the reason; ``time_s``. A number that
-        a variant does not have is nan. Lists are texts.
+        a variant does not have is nan, also that of a key that None leaves out. Lists are texts.
+        The other name of a key, as `pair.rack.addendum` of `rack.addendum`, finds its column too.
         """
         self._complete()
         if self._columns is None or self._columns[0] != self.done:
-            self._columns = self.done, columns_of(self._there)
+            self._columns = self.done, columns_of(self._there, self.plan.repeated)
         return self._columns[1]
 
     @property

@@ -11,16 +11,21 @@ import csv
 import importlib.util
 import json
 import math
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections import Counter
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import WriteError
+from gearcam.base.near_names import UnknownNameError
+from gearcam.base.two_names import spellings
 from gearcam.numeric.columns import Columns
 from gearcam.sweeps.kept import RowStore
 from gearcam.sweeps.rows import Built
@@ -41,7 +46,7 @@ class Tally(ShortRepr):
     facts : dict of str to bool
         Names of facts, and whether one of their values is a text.
     texts : set of str
-        Keys with a value that is not a number.
+        Keys with a value that is not a number; None is no value.
     """
 
     rows: int = 0
@@ -60,7 +65,7 @@ class Tally(ShortRepr):
         for name, value in row.facts.items():
             self.facts[name] = self.facts.get(name, False) or isinstance(value, str)
         for key, value in row.values.items():
-            if isinstance(value, bool) or not isinstance(value, int | float):
+            if isinstance(value, bool) or not isinstance(value, int | float | None):
                 self.texts.add(key)
 
     @property
@@ -84,22 +89,59 @@ def tally_of(rows: Iterable[Built]) -> Tally:
     return tally
 
 
-def columns_of(there: RowStore) -> Columns:
+class SweptColumns(Columns):
+    """Columns of a sweep, also found by the other names of keys and facts.
+
+    Parameters
+    ----------
+    columns : mapping of str to (n,) array
+        In order.
+    repeated : mapping of str to str
+        Keys of the design that facts repeat, by these facts.
+    """
+
+    def __init__(
+        self, columns: Mapping[str, ArrayLike], repeated: Mapping[str, str] = MappingProxyType({})
+    ) -> None:
+        super().__init__(columns)
+        self._repeated = dict(repeated)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (dict(self), self._repeated)
+
+    def __missing__(self, name: str) -> NDArray[Any]:
+        for one in spellings(self._repeated, name) if isinstance(name, str) else ():
+            if one in self:
+                return self[one]
+        raise UnknownNameError(name, self, self._all_refused)
+
+    @property
+    def _all_refused(self) -> str:
+        """The usual reason if all variants were refused: there are no facts then."""
+        reasons = Counter(map(str, self.get("refusal", ())))
+        if not reasons or reasons[""]:
+            return ""
+        return f"all {reasons.total()} variants were refused: {reasons.most_common(1)[0][0]}"
+
+
+def columns_of(there: RowStore, repeated: Mapping[str, str] = MappingProxyType({})) -> SweptColumns:
     """Return rows as columns, as of the CSV file; numbers that a row does not have are nan.
 
     Parameters
     ----------
     there : RowStore
         The rows.
+    repeated : mapping of str to str
+        Keys of the design that facts repeat, by these facts: either name finds a column.
 
     Returns
     -------
-    Columns
+    SweptColumns
         Empty without rows. Columns with a text are texts, empty where a row has none.
     """
     tally = tally_of(there.rows())
     if not tally.rows:
-        return Columns({})
+        return SweptColumns({})
     keys = list(next(there.rows()).values)
     texts, whole = tally.text_columns, {"number", "errors"}
     names, *_ = _records(there.rows(), keys, list(tally.facts))
@@ -111,8 +153,9 @@ def columns_of(there: RowStore) -> Columns:
                 cells[name].append("" if missing else str(value))
             else:
                 cells[name].append(math.nan if missing else value)
-    return Columns(
-        {name: np.array(one, dtype=_dtype(name, texts, whole)) for name, one in cells.items()}
+    return SweptColumns(
+        {name: np.array(one, dtype=_dtype(name, texts, whole)) for name, one in cells.items()},
+        repeated,
     )
 
 
@@ -200,9 +243,9 @@ def _records(
         }
 
 
-def _cell(value: Any) -> float | str:
-    """Return a value of a key as a number or a text."""
-    if isinstance(value, bool) or not isinstance(value, int | float | str):
+def _cell(value: Any) -> float | str | None:
+    """Return a value of a key as a number or a text; None of a key that is left out."""
+    if isinstance(value, bool) or not isinstance(value, int | float | str | None):
         return json.dumps(value)
     return value
 

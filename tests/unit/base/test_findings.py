@@ -27,6 +27,7 @@ OTHER_WORDS = {
 """Relations where the text of the key does not begin with least or largest."""
 
 WITHOUT_KEYS = {
+    "assemblies-jam": "at least",
     "coarse-rows": "at most",
     "energy": "at most",
     "guide-distance": "at least",

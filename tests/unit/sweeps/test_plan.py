@@ -81,6 +81,17 @@ def test_a_key_of_which_some_values_are_wrong_is_swept() -> None:
     assert plan({"law.eccentricity": "0.2,0.4,3"}).count == 3
 
 
+def test_keys_that_need_each_other_are_looked_at_together() -> None:
+    sizes = {"pair.module_mm": [None], "pair.center_distance_mm": [60, 90]}
+    one = plan(sizes)
+    assert one.count == 2
+    assert BASE.with_(one.values(1)).to_dict()["pair"]["center_distance_mm"] == 90
+    with pytest.raises(DesignError, match=r"law\.excentricity: unknown key"):
+        plan(sizes | {"law.excentricity": [0.1]})
+    with pytest.raises(DesignError, match="module_mm"):
+        plan({"pair.module_mm": [None]})
+
+
 def test_the_mark_tells_sweeps_apart() -> None:
     axes = {"law.eccentricity": "0.1:0.5"}
     made = [

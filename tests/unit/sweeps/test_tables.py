@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import importlib.util
 from pathlib import Path
 
+import numpy as np
 import polars as pl
 import pytest
 
 from gearcam.sweeps.log import Log
 from gearcam.sweeps.rows import Built
-from gearcam.sweeps.tables import Tally, write_tables
+from gearcam.sweeps.tables import Tally, columns_of, write_tables
 
 ROWS = [
     Built(
@@ -59,6 +61,24 @@ def test_the_table_has_a_row_for_each_variant(tables: tuple[Tally, Path]) -> Non
     assert table["refusal"].to_list()[1] == '"3" is too large'
     assert (tally.rows, tally.refused, tally.wrong) == (3, 1, 1)
     assert {one.name for one in folder.iterdir()} <= {"sweep.csv", "sweep.log", "sweep.parquet"}
+
+
+def test_a_number_that_is_left_out_is_nan(tmp_path: Path) -> None:
+    key = "pair.module_mm"
+    with Log(tmp_path, {"sweep": "x"}) as log:
+        for number, value in enumerate([None, 1]):
+            log.append(Built(number=number, values={key: value, "law.type": value and "a"}))
+        columns = columns_of(log)
+        write_tables(log, tmp_path)
+    assert columns[key].dtype.kind == "f"
+    assert np.isnan(columns[key]).tolist() == [True, False]
+    assert columns[key][1] == 1.0
+    assert columns["law.type"].tolist() == ["", "a"]
+    assert (tmp_path / "sweep.csv").read_text().splitlines()[1].startswith("0,,,")
+    table = pl.read_csv(tmp_path / "sweep.csv")
+    assert table[key].to_list() == [None, 1]
+    if importlib.util.find_spec("pyarrow"):
+        assert pl.read_parquet(tmp_path / "sweep.parquet")[key].to_list() == [None, 1.0]
 
 
 def test_parquet_has_the_same_with_types(tables: tuple[Tally, Path]) -> None:

@@ -32,6 +32,7 @@ from gearcam.meshing.settings import (
     ERRORS,
     FORCES,
     STRESS,
+    TRIALS,
     ErrorsSpec,
     MeshingSpec,
 )
@@ -310,6 +311,7 @@ KIND: Final = Kind(
         "gearcam.laws.row_checks",
         "gearcam.meshing.checks",
         "gearcam.meshing.error_checks",
+        f"{_HERE}.trial_checks",
         "gearcam.meshing.force_checks",
         "gearcam.stress.checks",
         "gearcam.dynamics.checks",
@@ -320,6 +322,7 @@ KIND: Final = Kind(
         "rows of tables",
         MESHING,
         ERRORS,
+        TRIALS,
         FORCES,
         DYNAMIC_FORCES,
         STRESS,

@@ -6,7 +6,8 @@ gives the same assemblies, in any number of processes. Outputs are a row for eac
 deg, and rad or, of a rack, mm), percentiles of the transmission error, and their histogram.
 
 An assembly in which nothing touches somewhere has no transmission error: its cells are empty, and
-it counts as one above all others in percentiles.
+it counts as one above all others in percentiles. One that jams counts in them as any other: its
+transmission error is that of its driving flanks alone, as if the coast flanks could overlap.
 """
 
 from __future__ import annotations
@@ -65,11 +66,14 @@ class AssemblyTrials(ShortRepr):
         How they run: of fewer, if it was interrupted.
     unit : str
         Unit of their transmission errors.
+    measured : bool
+        Whether an outline of a wheel was measured.
     """
 
     assemblies: Sequence[Assembly]
     outcomes: Sequence[Outcome]
     unit: str
+    measured: bool = False
 
     @property
     def done(self) -> int:
@@ -106,9 +110,10 @@ class AssemblyTrials(ShortRepr):
         """Return counts, and the errors that so many percent of the assemblies do not exceed."""
         errors = np.array([one.error for one in self.outcomes])
         touching = np.isfinite(errors)
+        jam = sum(one.jams for one in self.outcomes)
         tree: Tree = {
             "count": self.done,
-            "jam": Fact(sum(one.jams for one in self.outcomes), "assemblies that jam", shown=True),
+            "jam": Fact(jam, "assemblies that jam", shown=True),
             "apart": Fact(
                 int(np.count_nonzero(~touching)),
                 "assemblies in which nothing touches somewhere",
@@ -119,10 +124,11 @@ class AssemblyTrials(ShortRepr):
             share: float(np.percentile(errors, share, method="inverted_cdf"))
             for share in sorted(percentiles)
         }
+        whose = "the assemblies (those that jam too)" if jam else "the assemblies"
         tree[f"transmission_error_{self.unit}"] = {
             f"p{formatted(share).replace('.', '_')}": Fact(
                 value,
-                f"transmission error of {formatted(share)} % of the assemblies, at most",
+                f"transmission error of {formatted(share)} % of {whose}, at most",
                 unit=self.unit,
                 shown=True,
             )

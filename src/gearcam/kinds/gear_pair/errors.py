@@ -12,14 +12,15 @@ import numpy as np
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.facts import Fact, Tree, extent
-from gearcam.base.findings import limit_of, run_checks
+from gearcam.base.findings import in_order, limit_of, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import ARCSEC
+from gearcam.kinds.gear_pair import trial_checks  # noqa: F401  (its checks register themselves)
 from gearcam.kinds.gear_pair.error_trials import AssemblyTrials, Outcome, tried
 from gearcam.meshing.assembly import Assembly, alone, demand, given
 from gearcam.meshing.error_checks import TRANSMISSION
 from gearcam.meshing.errors import Running, Runs, cycle, largest, of_error
-from gearcam.meshing.settings import ERRORS
+from gearcam.meshing.settings import ERRORS, TRIALS
 from gearcam.numeric.arrays import as_complex
 from gearcam.numeric.bulges import flatten_bulges
 from gearcam.pictures.charts import Chart, Line
@@ -115,6 +116,7 @@ def study_errors(result: GearPairResult, progress: Progress, jobs: int = 1) -> S
             assemblies=[one for one, _ in done],
             outcomes=[outcome for _, outcome in done],
             unit=without.unit,
+            measured=every.measured,
         )
     group = {
         **_facts(together, gears, "all errors together"),
@@ -133,7 +135,12 @@ def study_errors(result: GearPairResult, progress: Progress, jobs: int = 1) -> S
         file="errors.csv",
         table=_columns(phi1, without, together, running),
         group=group,
-        study_findings=() if every.none else run_checks(ERRORS, together, limits),
+        study_findings=in_order(
+            [
+                *(() if every.none else run_checks(ERRORS, together, limits)),
+                *run_checks(TRIALS, trials, limits),
+            ]
+        ),
         further={"trials": trials.table} if trials.done else {},
         drawn=partial(_charts, lines, trials, without.unit),
         interrupted=""

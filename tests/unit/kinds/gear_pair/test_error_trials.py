@@ -12,6 +12,9 @@ import pytest
 import gearcam as gc
 from gearcam.base import processes
 from gearcam.base.errors import DesignError
+from gearcam.base.findings import run_checks
+from gearcam.kinds.gear_pair.error_trials import AssemblyTrials, Outcome
+from gearcam.meshing.settings import TRIALS
 from gearcam.results.study import StudyResult
 from helpers_built import built
 
@@ -72,6 +75,39 @@ def test_percentiles_are_those_asked_for() -> None:
     errors = np.sort(study.tables["trials"]["transmission_error_rad"])
     found = study.facts["errors.trials.transmission_error_rad"]
     assert dict(found) == {"p25": errors[2], "p99_9": errors[-1]}
+
+
+def test_assemblies_that_jam_are_a_warning_with_the_backlash_that_frees_them() -> None:
+    pair = DOCUMENT["pair"]
+    study = built(gc.design({**DOCUMENT, "pair": pair | {"backlash_mm": 0.01}})).study("errors")
+    table = study.tables["trials"]
+    jam = int(table["jams"].sum())
+    assert 0 < jam < 12
+    (found,) = study.study_findings
+    assert (found.code, found.severity, found.relation) == ("assemblies-jam", "warning", "at least")
+    assert found.message.startswith(f"{jam} of 12 random assemblies jam: about ")
+    assert found.value == table["least_backlash_mm"].min() < found.limit == 0.0
+    assert found.where == f"assembly {table['least_backlash_mm'].argmin() + 1}"
+    # percentiles count all of them, and say so
+    errors = np.sort(table["transmission_error_rad"])
+    p25 = study.facts.quantity("errors.trials.transmission_error_rad.p25")
+    assert p25.value == errors[2]
+    assert "(those that jam too)" in p25.meaning
+    more = float(found.message.partition("about ")[2].split()[0])
+    assert -found.value <= more <= -1.1 * found.value
+    freed = gc.design({**DOCUMENT, "pair": pair | {"backlash_mm": 0.01 + more}})
+    study = built(freed).study("errors")
+    assert not study.tables["trials"]["jams"].any()
+    assert study.study_findings == ()
+    assert "jam" not in study.facts.quantity("errors.trials.transmission_error_rad.p25").meaning
+
+
+def test_of_measured_outlines_no_backlash_is_told() -> None:
+    jammed = [Outcome(1e-3, -0.2, jams=True), Outcome(1e-3, 0.1, jams=False)]
+    trials = AssemblyTrials(assemblies=(), outcomes=jammed, unit="rad", measured=True)
+    (found,) = run_checks(TRIALS, trials, {})
+    assert found.message.startswith("1 of 2 random assemblies jam: how much more backlash")
+    assert "is not known" in found.message
 
 
 @pytest.mark.parametrize("wrong", [[0], [101], [], [50, 50]])
