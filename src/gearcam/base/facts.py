@@ -385,7 +385,13 @@ class Facts(Mapping[str, Any]):
         return (one for one in rows if one in chosen)
 
     def quantity(self, name: str) -> NamedFact:
-        """Return the quantity with a dotted `name`, or that repeats a key of this name."""
+        """Return the quantity with a dotted `name`, or that repeats a key of this name.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is none; a KeyError with the nearest names.
+        """
         for one in (name, *spellings(self._repeated, name)):
             if one in self._named:
                 return self._named[one]

@@ -28,7 +28,19 @@ def fact_of(keys: Mapping[str, str], name: str) -> str:
 
 
 def spellings(keys: Mapping[str, str], name: str) -> Iterator[str]:
-    """Yield the other names of what `name` names: the fact, the key, places without brackets."""
+    """Yield other names of what a name names: the fact, the key, and places without brackets.
+
+    Parameters
+    ----------
+    keys : mapping of str to str
+        Keys by the facts that repeat them.
+    name : str
+        The name.
+
+    Yields
+    ------
+    str
+    """
     plain = _PLACE.sub(r".\1", name)
     for one in (name, plain):
         yield from (fact_of(keys, one), key_of(keys, one))
