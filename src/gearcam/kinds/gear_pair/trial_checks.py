@@ -32,7 +32,7 @@ def assemblies_jam(trials: AssemblyTrials, limit: float) -> Iterator[Remark]:  #
     if trials.measured:  # backlash changes no measured outline
         help_ = "how much more backlash frees measured outlines is not known"
     yield Remark(
-        f"{many}: {help_}; so does a larger centre distance, which this study does not compute.",
+        f"{many}: {help_}; the centre distance that does is not computed.",
         f"assembly {worst + 1}",
         least,
         limit=0.0,
