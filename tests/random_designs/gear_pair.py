@@ -126,6 +126,7 @@ def _errors(d: Draw, design: dict[str, Any], module: float) -> dict[str, Any]:
             "pitch_tolerance_mm": size(),
             "distribution": d.pick(["uniform", "normal"]),
             "trials": d.whole(1, 3),
+            "percentiles": [50.0, 97.5],
             "seed": d.whole(0, 9),
         }
     return errors

@@ -38,7 +38,7 @@ def test_an_example_does_what_it_shows(name: str) -> None:
     assert f'study("{study.name}")' in study.example
     example = doctest.DocTestParser().get_doctest(study.example, {}, name, None, None)
     told: list[str] = []
-    doctest.DocTestRunner().run(example, out=told.append)
+    doctest.DocTestRunner(verbose=False).run(example, out=told.append)
     assert told == []
 
 
