@@ -44,7 +44,7 @@ array([0.5385, 0.6435])
 ('gear1.dxf', 'gear2.dxf', 'pair.dxf', 'summary.json')
 
 *Studies* look at a result more closely: meshing, errors of mounting, forces, stress and others.
-Their settings are the keys of their table in a design file; ``help(result.study)`` tells of each.
+Their settings are the keys of their table in a design file; ``help(result.study)`` describes each.
 
 >>> study = result.mesh(steps=36, center_distance_mm=42.0)
 >>> round(study.facts["meshing.backlash_mm"]["min"], 4)
@@ -60,7 +60,7 @@ commands of the same names do.
 >>> variants.columns["pair.ratio.max"].round(3)
 array([1.222, 1.857])
 
-*What goes wrong* is told at once: `DesignError` lists the mistakes in a design, `InfeasibleError`
+*Errors* name the cause: `DesignError` lists the mistakes in a design, `InfeasibleError`
 tells why it cannot be made and the nearest value that can; `remedies` searches for changes that
 make it work.
 

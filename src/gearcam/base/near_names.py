@@ -1,4 +1,4 @@
-"""The names that are nearest to one that does not exist, and the error that tells them."""
+"""The names that are nearest to one that does not exist, and the error that lists them."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import Final
 
 _LISTED: Final = 3
-"""Largest number of names that are told for one that there is not."""
+"""Largest number of names that are listed for one that does not exist."""
 
 _LEAST: Final = 0.5
 """Least similarity of names."""

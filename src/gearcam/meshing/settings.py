@@ -204,7 +204,7 @@ class ErrorsSpec(FromFile):
         gt=0,
         le=100,
         min_length=1,
-        doc="percentages of the random assemblies whose largest transmission error is told",
+        doc="percentiles of the transmission error of random assemblies, in percent",
     )
     steps: int = param(
         COUNT, default=360, ge=8, le=100000, doc="number of phases in a turn of the driver"

@@ -49,15 +49,18 @@ class HandleTool {
     return Object.keys(moves).filter((key) => this.numbers.free(key));
   }
 
-  at({ x, y, pixel }) {
-    let [least, found] = [REACHED * pixel, null];
-    if (this.known?.place !== this.gearcam.page.place) return null;
-    for (const handle of this.known.handles) {
+  // Those of some handles that numbers move, with where they are.
+  * spotsOf(handles) {
+    for (const handle of handles) {
       const spot = this.keysOf(handle).length && this.spotOf(handle);
-      const away = spot ? Math.hypot(spot.x - x, spot.y - y) : Infinity;
-      if (away < least) [least, found] = [away, handle];
+      if (spot) yield { ...spot, handle };
     }
-    return found;
+  }
+
+  at(spot) {
+    if (this.known?.place !== this.gearcam.page.place) return null;
+    const spots = this.spotsOf(this.known.handles);
+    return this.gearcam.nearestTo(spot, spots, REACHED * spot.pixel)?.handle ?? null;
   }
 
   over(spot, event) {
@@ -208,9 +211,7 @@ class HandleTool {
   * marks(pixel) {
     if (this.known?.place !== this.gearcam.page.place && !this.held) return;
     const handles = this.held ? [this.held.handle] : this.known.handles;
-    for (const handle of handles) {
-      const spot = this.keysOf(handle).length && this.spotOf(handle);
-      if (!spot) continue;
+    for (const { handle, ...spot } of this.spotsOf(handles)) {
       const ring = this.gearcam.dot(spot, (handle === this.near ? 9 : 6) * pixel, null);
       yield { ...ring, ink: "accent", width: 2 };
     }

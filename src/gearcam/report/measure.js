@@ -31,14 +31,7 @@ class MeasureTool {
     const { scene, seen, place } = this.page;
     const { poses } = this;
     const contacts = touchingIn(scene, seen.contacts, place);
-    const nearest = (spots) => {
-      let [least, found] = [SNAP * pixel, null];
-      for (const spot of spots) {
-        const away = Math.hypot(spot.x - x, spot.y - y);
-        if (away < least) [least, found] = [away, spot];
-      }
-      return found;
-    };
+    const nearest = (spots) => nearestTo({ x, y }, spots, SNAP * pixel);
     const found = nearest(this.centres(poses))
       ?? nearest(contacts.map((one) => ({ x: one.x, y: one.y, body: -1 })))
       ?? nearest(this.corners(poses))
@@ -162,8 +155,9 @@ class MeasureTool {
 
 // Where an outline bends by more than its chords do: its ends too.
 function cornersOf(chain) {
-  chain.corners ??= [];
-  if (chain.corners.length || chain.length < 4) return chain.corners;
+  if (chain.corners) return chain.corners;
+  chain.corners = [];
+  if (chain.length < 4) return chain.corners;
   const count = chain.length / 2;
   const shut = chain[0] === chain.at(-2) && chain[1] === chain.at(-1);
   const point = (k) => [chain[2 * k], chain[2 * k + 1]];

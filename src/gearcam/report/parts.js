@@ -8,8 +8,8 @@ function palette(paper = false) {
   const before = root.classList.contains("paper");
   root.classList.toggle("paper", paper || before);
   const style = getComputedStyle(root);
-  const names = ["ground", "text", "muted", "rule", "contact", "pitch", "centrode", "limit"];
-  names.push("accent");
+  const names = ["ground", "text", "muted", "rule", "contact", "pitch", "centrode", "limit",
+    "accent"];
   for (const k of [1, 2, 3]) names.push(`fill-${k}`, `ink-${k}`, `floor-${k}`, `carry-${k}`);
   for (const k of [1, 2, 3, 4, 5, 6]) names.push(`line-${k}`);
   for (let k = 1; k <= LEVELS; k++) names.push(`level-${k}`);

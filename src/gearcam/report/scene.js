@@ -213,8 +213,8 @@ function* marksOf(scene, place, cycles, seen, pixel, edge = Infinity) {
   if (pitch) yield dot(pitch, 4 * pixel, "pitch");
   if (seen.names) yield* nameMarks(scene, poses, pixel, edge);
   for (const k of seen.lit ?? []) {
-    const { metal, lines } = scene.bodies[k] ?? { metal: [], lines: [] };
-    const chains = [...metal, ...lines.filter((one) => !one.dashed && one.closed).map((one) => one.points)];
+    if (!scene.bodies[k]) continue;
+    const chains = edgesOf(scene.bodies[k]);
     yield { chains, closed: true, ink: "contact", width: 2.5, pose: poses[k] };
   }
   for (const { body, tooth } of seen.teeth ?? []) {
@@ -239,6 +239,24 @@ function* ghostMarks(scene, place) {
     ];
     for (const one of drawn) yield { ...one, ink: "muted", dash: [3, 3], pose: poses[k] };
   }
+}
+
+// The one of some spots that is nearest to a point, within a reach; null if all are farther.
+function nearestTo({ x, y }, spots, reach) {
+  let [least, found] = [reach, null];
+  for (const spot of spots) {
+    const away = Math.hypot(spot.x - x, spot.y - y);
+    if (away < least) [least, found] = [away, spot];
+  }
+  return found;
+}
+
+// The closed edges of a body; the same list each time, by which its path is known.
+function edgesOf(body) {
+  return (body.edges ??= [
+    ...body.metal,
+    ...body.lines.filter((one) => !one.dashed && one.closed).map((one) => one.points),
+  ]);
 }
 
 // Where a point in the frame of a body is.

@@ -1,4 +1,4 @@
-"""The help of ``result.study``: each kind of design tells of its own studies."""
+"""The help of ``result.study``: each kind of design describes its own studies."""
 
 from __future__ import annotations
 

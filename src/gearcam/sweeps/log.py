@@ -10,11 +10,10 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterator
-from contextlib import suppress
+from contextlib import AbstractContextManager, suppress
 from dataclasses import asdict
 from pathlib import Path
-from types import TracebackType
-from typing import Any, BinaryIO, Final, Self
+from typing import Any, BinaryIO, Final
 
 from gearcam.base.errors import DesignError, WriteError
 from gearcam.sweeps.rows import Built
@@ -23,7 +22,7 @@ LOG: Final = "sweep.log"
 """Name of the file."""
 
 
-class Log:
+class Log(AbstractContextManager["Log"]):
     """The log of a sweep.
 
     Parameters
@@ -61,15 +60,7 @@ class Log:
             self._file.close()
             raise
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def close(self) -> None:

@@ -25,10 +25,9 @@ from __future__ import annotations
 import os
 import weakref
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+from contextlib import AbstractContextManager, suppress
 from dataclasses import replace
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Final, Self
 
 import numpy as np
@@ -52,7 +51,7 @@ from gearcam.sweeps.optimum import FRONT, Trials
 from gearcam.sweeps.plan import Plan
 from gearcam.sweeps.rows import Built, measured
 from gearcam.sweeps.sweep import Progress
-from gearcam.sweeps.tables import columns_of, write_tables, written_whole
+from gearcam.sweeps.tables import columns_of, made_folder, write_tables, written_whole
 
 LOG: Final = "optimize.log"
 _STEM: Final = "optimize"
@@ -85,7 +84,7 @@ def goals_for(what: Asked, given: Mapping[str, Any]) -> Asked:
     return replace(what, base=base)
 
 
-class Optimum:
+class Optimum(AbstractContextManager["Optimum"]):
     """A search for the best variants of a design.
 
     Parameters
@@ -142,15 +141,7 @@ class Optimum:
         goals = ", ".join(_goals(self.goal.signs))
         return cut(f'<Optimum of "{self.plan.base.name}": {len(self.rows)} trials; {goals}>')
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def close(self) -> None:
@@ -239,7 +230,7 @@ class Optimum:
         folder : path, optional
             Where; the folder of the log by default.
         kept : callable, optional
-            ``kept(file, former)`` is told of a design file that was changed by hand, and so kept
+            ``kept(file, former)`` is called for a design file that was changed by hand and is kept
             under another name.
 
         Returns
@@ -256,10 +247,7 @@ class Optimum:
         WriteError
             If a file cannot be written.
         """
-        place = self.folder if folder is None else Path(folder)
-        if place is None:
-            raise DesignError.of("is not given", key="folder", allowed="a path")
-        place.mkdir(parents=True, exist_ok=True)
+        place = made_folder(self.folder if folder is None else folder)
         _, files = write_tables(self._there, place, _STEM)
         for path, content in self._contents(place).items():
             try:

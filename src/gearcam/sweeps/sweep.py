@@ -32,9 +32,9 @@ from __future__ import annotations
 import os
 import weakref
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager
 from pathlib import Path
-from types import TracebackType
-from typing import Any, Final, Self
+from typing import Any, Final
 
 from gearcam.base.display import cut
 from gearcam.base.errors import DesignError
@@ -47,7 +47,14 @@ from gearcam.sweeps.kept import Kept, RowStore
 from gearcam.sweeps.log import Log
 from gearcam.sweeps.plan import Plan
 from gearcam.sweeps.rows import Built
-from gearcam.sweeps.tables import Tally, columns_of, tally_of, write_tables, written_whole
+from gearcam.sweeps.tables import (
+    Tally,
+    columns_of,
+    made_folder,
+    tally_of,
+    write_tables,
+    written_whole,
+)
 
 DRAWN: Final = 100_000
 """Largest number of variants that a page shows."""
@@ -56,7 +63,7 @@ Progress = Callable[[int, int], Any]
 """``progress(done, total)`` is called with the number of rows that are there and their total."""
 
 
-class Sweep:
+class Sweep(AbstractContextManager["Sweep"]):
     """A sweep: its variants, and the rows that are there.
 
     It is iterated for rows as they come. Asked for `columns` or `rows` it builds what is missing.
@@ -112,15 +119,7 @@ class Sweep:
         yield from self._there.rows()
         yield from self.missing()
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def close(self) -> None:
@@ -207,10 +206,7 @@ class Sweep:
         WriteError
             If a file cannot be written.
         """
-        place = self.folder if folder is None else Path(folder)
-        if place is None:
-            raise DesignError.of("is not given", key="folder", allowed="a path")
-        place.mkdir(parents=True, exist_ok=True)
+        place = made_folder(self.folder if folder is None else folder)
         tally, files = write_tables(self._there, place)
         if not tally.rows or tally.rows > DRAWN:
             return files

@@ -11,6 +11,7 @@ import csv
 import importlib.util
 import json
 import math
+import os
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -23,7 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gearcam.base.display import ShortRepr
-from gearcam.base.errors import WriteError
+from gearcam.base.errors import DesignError, WriteError
 from gearcam.base.near_names import UnknownNameError
 from gearcam.base.two_names import spellings
 from gearcam.numeric.columns import Columns
@@ -199,6 +200,15 @@ def write_tables(log: RowStore, folder: Path, stem: str = "sweep") -> tuple[Tall
     texts = tally.text_columns
     written_whole(more, lambda path: _write_parquet(path, _records(log.rows(), keys, facts), texts))
     return tally, [table, more]
+
+
+def made_folder(folder: str | os.PathLike[str] | None) -> Path:
+    """Return the `folder` of files, which is made; none is refused (`DesignError`)."""
+    if folder is None:
+        raise DesignError.of("is not given", key="folder", allowed="a path")
+    place = Path(folder)
+    place.mkdir(parents=True, exist_ok=True)
+    return place
 
 
 def written_whole(path: Path, write: Callable[[Path], Any]) -> None:

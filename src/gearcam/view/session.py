@@ -102,7 +102,7 @@ class Session:
         self._notice = notice
         self._news = threading.Condition()
         self._newest, self._search = _Newest(count), _Newest(1)
-        self._models, self._grips = _Newest(1), _Newest(1)
+        self._models, self._handles = _Newest(1), _Newest(1)
         self._turn = self._whole = 0
 
     def refresh(self, content: bytes | None) -> None:
@@ -237,7 +237,7 @@ class Session:
         )
 
     def handles(self, asked: Mapping[str, Any]) -> dict[str, Any] | None:
-        """Return what can be dragged in the picture (see `work.grips`).
+        """Return what can be dragged in the picture (see `work.find_handles`).
 
         Parameters
         ----------
@@ -262,9 +262,9 @@ class Session:
 
         def found() -> work.Reply:
             asked = (state.text, self.file, changes, steps, float(place))
-            return _result(self._workers.submit(work.grips, *asked), self.file)
+            return _result(self._workers.submit(work.find_handles, *asked), self.file)
 
-        return self._grips.run(found)
+        return self._handles.run(found)
 
     def solids(self, asked: Mapping[str, Any]) -> dict[str, Any] | None:
         """Return a view of the solids of a design with changed numbers (see `work.solids`).

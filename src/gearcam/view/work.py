@@ -148,7 +148,7 @@ def solids(text: str, file: str) -> Reply:
     return _reply(lambda: solids_shown(build(loads(text, file=file))), file)
 
 
-def grips(text: str, file: str, changes: Values, steps: Values, place: float) -> Reply:
+def find_handles(text: str, file: str, changes: Values, steps: Values, place: float) -> Reply:
     """Find what can be dragged in the picture.
 
     Parameters

@@ -20,7 +20,7 @@ DRAFT = math.radians(3.0) ** 2 / 8.0
 def found(profile: str, *, place: float = PLACE, **steps: float) -> dict[tuple[int, str], Any]:
     text = (PROFILES / f"{profile}.toml").read_text()
     given = steps or {key: 1e-3 for key in numbers(text) if not key.startswith("output")}
-    reply = work.grips(text, str(PROFILES / f"{profile}.toml"), {}, given, place)
+    reply = work.find_handles(text, str(PROFILES / f"{profile}.toml"), {}, given, place)
     assert not reply["error"]
     return {(one["body"], one["name"]): one["moves"] for one in reply["handles"]}
 
