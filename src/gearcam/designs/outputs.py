@@ -20,6 +20,9 @@ FORMATS: Final = (
 )  # fmt: skip
 """Kinds of files that ``output.files`` may list."""
 
+PROCESSES: Final = ("printing", "laser", "wire", "mill")
+"""How parts are made."""
+
 _FILES: Final = "files to write; summary.json is always written"
 _STUDIES: Final = "studies to include in summary and report, by the names of their commands"
 
@@ -33,6 +36,13 @@ def files_param(formats: tuple[str, ...], kind: str) -> Any:
 def studies_param(kind: str = "") -> Any:
     """Return the field of the studies to include, any of those of a `kind`, if it is given."""
     return param(TEXT, default=(), choices=kind_studies(kind) if kind else (), doc=_STUDIES)
+
+
+def process_param() -> Any:
+    """Return the field of the process by which parts are made."""
+    doc = "how the parts are made: arrows and zero marks are as wide and deep as it can make them; "
+    doc += "as milled ones if left out"
+    return param(TEXT, default=None, choices=PROCESSES, example="printing", doc=doc)
 
 
 def pose_param(word: str, doc: str) -> Any:
@@ -56,6 +66,8 @@ class OutputSpec(ShortRepr):
         Width of the cut.
     dxf_curves, dxf_version : str
         How outlines are drawn, and the version of the files.
+    process : str
+        How the parts are made.
     """
 
     files: tuple[str, ...] = param(TEXT, default=("csv",), choices=FORMATS, doc=_FILES)
@@ -85,6 +97,7 @@ class OutputSpec(ShortRepr):
         example="R2010",
         doc="version of dxf files; if left out R12 (for old machines) with lines, else R2010",
     )
+    process: str | None = process_param()
 
     rules = (
         excluded(

@@ -21,7 +21,13 @@ from typing import Any, Final
 import numpy as np
 
 from gearcam.base.numerals import formatted
-from gearcam.export.step_shapes import RESOLUTION, occt, properties, valid_solids
+from gearcam.export.step_shapes import (
+    RESOLUTION,
+    occt,
+    properties,
+    valid_solids,
+    with_fittings,
+)
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.nets import SplineNet, spline_breaks, spline_poles
 from gearcam.numeric.splines import DEGREE
@@ -75,7 +81,7 @@ def banded_solid(body: BandedBody) -> Any:
     SolidError
         If it is invalid, or its volume is not that of the body.
     """
-    (solid,) = valid_solids(body.name, lambda: [_Maker(body).solid()])
+    (solid,) = valid_solids(body.name, lambda: [_fitted(body)])
     off = abs(properties(solid).Mass() - body.volume)
     if off > body.volume_error:
         raise SolidError(
@@ -83,6 +89,11 @@ def banded_solid(body: BandedBody) -> Any:
             f" that of the mesh explains {formatted(body.volume_error, 3)} mm3"
         )
     return solid
+
+
+def _fitted(body: BandedBody) -> Any:
+    made = _Maker(body).solid()
+    return made if body.core is None else with_fittings(made, body.core, RESOLUTION)
 
 
 class _Maker:

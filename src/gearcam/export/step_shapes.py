@@ -25,13 +25,17 @@ import numpy as np
 
 from gearcam.numeric.bulges import arc_centers, bulge_pieces
 from gearcam.numeric.contour import Contour, Run
+from gearcam.numeric.polygons import nearest
 from gearcam.numeric.splines import DEGREE, Spline, fit_splines
-from gearcam.parts.body import Edge, Layer, Part
+from gearcam.parts.body import Bevel, Edge, Layer, Part, ScrewHole
 from gearcam.parts.shapes import Circle, Loop
 from gearcam.parts.solids import OVERSHOOT, SolidError, demand_volume
 
 COLLECTIONS: Final = ("Array1", "Array2", "IndexedMap", "List", "Sequence")
 """Prefixes of names that are in one module of the binding; all others begin with their module."""
+
+_NEAR: Final = 1e-2
+"""Distance, mm, of an edge of the kernel from the outline that it belongs to."""
 
 RESOLUTION: Final = 1e-7
 """The kernel's own tolerance, mm: closer points are equal."""
@@ -155,7 +159,9 @@ def subshapes(shape: Any, kind: str) -> list[Any]:
 
 def _explained(part: Part, tolerance: float) -> float:
     """Return the volume between the true outlines and curves within the tolerance, mm^3."""
-    return sum(
+    # the kernel's chamfers have mitres where parallels have arcs
+    corners = sum(one.height**3 for one in part.bevels if isinstance(one.edge, Loop))
+    return corners + sum(
         edge.length * tolerance * layer.height
         for layer in (*part.steps, *part.recesses)
         for edge in layer.edges
@@ -181,12 +187,73 @@ def _step(part: Part, number: int, tolerance: float) -> Any:
     high = max(layer.high for layer in part.layers) + CLEARANCE
     cutters = [Layer(edge=opening.shape, low=low, high=high) for opening in late]
     if topmost:
-        marks = part.pockets[: len(part.marks)]
-        cutters += [replace(one, high=one.high + OVERSHOOT * one.height) for one in marks]
         cutters += part.cutters(OVERSHOOT)
     tools = [prism(cutter, tolerance) for cutter in cutters]
+    if part.screw is not None and (topmost if part.screw.middle > 0.0 else lowest):
+        tools.append(_drilled(part.screw))
     made = _combined(occt.BRepAlgoAPI_Cut(), body, tools) if tools else body
-    return _converted(made) if part.recesses else made
+    made = _converted(made) if part.recesses else made
+    ends = [one for one in part.bevels if (topmost if one.up else lowest)]
+    return _chamfered(made, ends, tolerance) if ends else made
+
+
+def with_fittings(body: Any, core: Part, tolerance: float) -> Any:
+    """Return a solid with what a part in its core has: openings, hubs, marks, chamfers.
+
+    Parameters
+    ----------
+    body : TopoDS_Solid
+        Without openings.
+    core : Part
+        A round part within it, with the same faces.
+    tolerance : float, mm
+        Of curves that are not exact.
+
+    Returns
+    -------
+    TopoDS_Solid
+    """
+    hubs = [_prism(replace(boss, openings=()), tolerance) for boss in core.bosses]
+    if hubs:
+        body = _combined(occt.BRepAlgoAPI_Fuse(), body, hubs)
+    low, high = core.ends[0] - CLEARANCE, core.ends[1] + CLEARANCE
+    cutters = [Layer(edge=one.shape, low=low, high=high) for one in core.openings]
+    tools = [_prism(one, tolerance) for one in (*cutters, *core.cutters(OVERSHOOT))]
+    tools += [] if core.screw is None else [_drilled(core.screw)]
+    if tools:
+        body = _combined(occt.BRepAlgoAPI_Cut(), body, tools)
+    return _chamfered(body, core.bevels, core.tolerance) if core.bevels else body
+
+
+def _drilled(screw: ScrewHole) -> Any:
+    """Return the hole of a set screw as a cylinder, from the axis to outside of the hub."""
+    way = occt.gp_Dir(math.cos(screw.angle), math.sin(screw.angle), 0.0)
+    axes = occt.gp_Ax2(_point(0j, screw.middle), way)
+    length = CLEARANCE + screw.edge.reach
+    return occt.BRepPrimAPI_MakeCylinder(axes, 0.5 * screw.drill, length).Shape()
+
+
+def _chamfered(body: Any, bevels: Sequence[Bevel], tolerance: float) -> Any:
+    """Return a solid whose edges in faces have chamfers."""
+    maker = occt.BRepFilletAPI_MakeChamfer(body)
+    rings = [(one, one.edge.polyline(tolerance)) for one in bevels]
+    for edge in subshapes(body, "EDGE"):
+        curve = occt.BRepAdaptor_Curve(occt.TopoDS.Edge(edge))
+        places = np.linspace(curve.FirstParameter(), curve.LastParameter(), 5)[1:-1]
+        points = [curve.Value(float(place)) for place in places]
+        for bevel, ring in rings:
+            level = bevel.high if bevel.up else bevel.low
+            if any(abs(one.Z() - level) > RESOLUTION for one in points):
+                continue
+            away = [nearest(ring, complex(one.X(), one.Y())) for one in points]
+            if max(away) < _NEAR:
+                maker.Add(bevel.height, occt.TopoDS.Edge(edge))
+                break
+    maker.Build()
+    solids = subshapes(maker.Shape(), "SOLID") if maker.IsDone() else []
+    if len(solids) != 1:
+        raise SolidError("the kernel makes no solid with this chamfer")
+    return solids[0]
 
 
 def _combined(operation: Any, body: Any, tools: Sequence[Any]) -> Any:

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from gearcam.base.adjustments import Changes
     from gearcam.base.facts import Tree
     from gearcam.mechanics.driver_axis import DriverAxis
+    from gearcam.parts.body import Part
     from gearcam.results.parts import Estimates
     from gearcam.spatial.loaded import RollerTouch
 
@@ -49,6 +50,9 @@ SAGITTA: Final = 0.01
 ROUND: Final = 4
 """Chords of the blank for each position of a roller that cuts a solid: the error of its volume is
 that of the walls then."""
+
+_FINE: Final = 1e-3
+"""Chord tolerance of hub, openings and marks, mm."""
 
 _COARSE: Final = math.radians(4.0)
 """Least steps of the driver in a draft: the solid's volume is good to a thousandth."""
@@ -182,9 +186,65 @@ class GriddedCam(LoadedCam, Result):
         vars(result).update(known)
         return result
 
+    @property
+    @abstractmethod
+    def core_size(self) -> tuple[float, float, float]:
+        """Radius of the metal below the walls, height of the lower face, and length, mm."""
+
+    @property
+    @abstractmethod
+    def rims(self) -> tuple[float, float]:
+        """Radii of the edges of the lower and the upper face, mm."""
+
+    @cached_property
+    def core(self) -> Part | None:
+        """The metal below the walls with hub, openings and marks; None with a round bore alone.
+
+        Raises
+        ------
+        InfeasibleError
+            If one of them has no space.
+        """
+        blank, (radius, _, length) = self.design.blank, self.core_size
+        if blank.plain:
+            return None
+        from gearcam.parts.make import bevels, make_part
+        from gearcam.parts.marks import zero_mark
+        from gearcam.parts.openings import Workpiece
+        from gearcam.parts.shapes import Circle
+
+        work = Workpiece(
+            name="the cam",
+            rim=self.rims[1] - radius or 0.2 * radius,
+            within="the floor of the groove",
+            process=self.design.output.process or "mill",
+        )
+        edge = Circle(center=0j, diameter=2.0 * radius)
+        with self.stage("blank"):
+            made = make_part(
+                STEM,
+                [edge.contour(_FINE)],
+                length,
+                replace(blank, chamfer=0.0),
+                work,
+                lambda: zero_mark(radius, -1.0, length, work.process),
+                way=-1.0 if self.cam.clockwise else 1.0,
+            )
+            outside = [Circle(center=0j, diameter=2.0 * one) for one in self.rims]
+            made_bevels = bevels(made, blank.chamfer, work, outside)
+            return replace(made, bevels=tuple(made_bevels))
+
+    @property
+    def turned_bore(self) -> float:
+        """Radius of the bore with which the solid is turned, mm; 0 if it is cut out later."""
+        return 0.0 if self.core is not None else 0.5 * self.design.blank.bore
+
     @abstractmethod
     def solid_of(self, steps: int, places: int) -> Mesh:
-        """Return the cam as a mesh, as if it turned counter-clockwise (see `mesh_of`)."""
+        """Return the cam as a mesh, as if it turned counter-clockwise (see `mesh_of`).
+
+        It has a bore of `turned_bore`.
+        """
 
     @abstractmethod
     def facets(self, steps: int, places: int) -> int:
@@ -206,7 +266,12 @@ class GriddedCam(LoadedCam, Result):
         """
         with self.stage("solid"):
             made = self.solid_of(steps, places)
-            return made.mirrored if self.cam.clockwise else made
+            made = made.mirrored if self.cam.clockwise else made
+            if self.core is None:
+                return made
+            from gearcam.parts.solids import fitted
+
+            return fitted(made, self.core, self.core_size[1])
 
     @abstractmethod
     def moved_poses(self, theta: Array) -> dict[str, SpacePose]:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from gearcam.base.display import ShortRepr
 from gearcam.numeric.nets import SplineNet
+from gearcam.parts.body import Part
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,6 +64,8 @@ class BandedBody(ShortRepr):
         The volume that the solid must have.
     volume_error : float, mm^3
         By how much it may differ.
+    core : Part or None
+        A round part within it, whose openings, hubs, marks and chamfers it has.
     """
 
     name: str
@@ -71,3 +74,4 @@ class BandedBody(ShortRepr):
     error: float
     volume: float
     volume_error: float
+    core: Part | None = None

@@ -1,6 +1,7 @@
-"""Blanks: parameters of the wheels beyond their teeth.
+"""Blanks: what parts have beside their teeth and cam profiles.
 
-Most values are given once for both wheels, or twice, driver first; 0 means that there is none. A
+Whatever turns on a shaft may have the same. Of a pair most values are given once for both wheels,
+or twice, driver first; 0 means that there is none. A
 *keyway* is cut into the bore; its depth counts from the bore's circle, at the middle of the keyway,
 as in shaft standards. A *D-shaped bore* has a flat. *Hubs* are raised on the faces: front is +z.
 *Lightening holes* lie between hub and rim and are as large as the rim allows. In a *stop slot* runs
@@ -17,7 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field, fields, make_dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar, Final, get_type_hints
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Self, get_type_hints
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.numerals import formatted
@@ -29,6 +30,7 @@ from gearcam.base.quantities import (
     LONGEST,
     TEXT,
     allowance,
+    fixed,
     param,
     params_of,
     positive_length,
@@ -41,7 +43,7 @@ KIND: Final = "parts"
 _FOLLOWING: Final = ("bore_diameter", "keyway_width", "bore_flat", "bolt_diameter", "stop_pin")
 """Sizes of openings for a shaft, a bolt or a pin."""
 
-_COMMON: Final = ("timing_marks", "mark_diameter", "clearance_bores")
+_COMMON: Final = ("timing_marks", "mark_diameter", "clearance_bores", "rotation_arrow")
 """Given once for both wheels."""
 
 _SERVES: Final = {
@@ -56,6 +58,8 @@ _SERVES: Final = {
     "bolt_angle": ("bolts",),
     "rim": ("lightening_holes",),
     "web": ("lightening_holes",),
+    "set_screw": ("bore_diameter", "hub_diameter"),
+    "set_screw_angle": ("set_screw",),
 }
 """What says more of something else, which it needs."""
 
@@ -71,6 +75,11 @@ OPENING_RULES: Final = (
     needs("bolts", "bolt_circle", "bolt_diameter"),
 )
 """Rules for bore, hub and holes."""
+
+TAPPED: Final = {
+    2.0: 1.6, 2.5: 2.05, 3.0: 2.5, 4.0: 3.3, 5.0: 4.2, 6.0: 5.0, 8.0: 6.8, 10.0: 8.5, 12.0: 10.2
+}  # fmt: skip
+"""Tapping drills of coarse threads by their nominal diameters, mm (ISO 2306)."""
 
 
 def serving(names: Collection[str]) -> set[str]:
@@ -93,7 +102,7 @@ def _length(*, doc: str, le: float = LONGEST) -> Any:
 
 
 def _angle(*, doc: str) -> Any:
-    return param(ANGLE, default=0.0, ge=-360, le=360, doc=f"{doc} in the wheel's frame")
+    return param(ANGLE, default=0.0, ge=-360, le=360, doc=f"{doc} in the part's frame")
 
 
 def _count(*, doc: str, le: int) -> Any:
@@ -113,15 +122,20 @@ def least_metal(*, example: float, doc: str) -> Any:
 
 
 @dataclass(frozen=True, kw_only=True)
-class WheelBlank(ShortRepr):
-    """Bore, hub, holes, marks and edges of one wheel, mm and rad; 0 or None means none.
+class ShaftBlank(ShortRepr):
+    """Bore, hub, holes and marks of what turns on a shaft, mm and rad; 0 or None means none.
+
+    Parameters
+    ----------
+    stop_pin, timing_marks, mark_diameter, clearance, clearance_bores, tip_rounding
+        They belong to edges that are cut, and to teeth.
 
     Examples
     --------
     >>> import gearcam as gc
-    >>> blank = gc.WheelBlank(bore_diameter=16.0, keyway_width=5.0, keyway_depth=2.3)
-    >>> round(blank.bore_reach, 3)
-    10.599
+    >>> blank = gc.CylinderBlank(bore_diameter=16.0, hub_diameter=30.0, hub_front=10.0)
+    >>> blank.bore_reach
+    8.0
     """
 
     bore_diameter: float | None = param(
@@ -130,11 +144,12 @@ class WheelBlank(ShortRepr):
         ge=0,
         le=LONGEST,
         zero_is_none=True,
+        example=20,
         doc="diameter of the bore; no bore if left out",
     )
     keyway_width: float = _length(doc="width of the keyway")
     keyway_depth: float = _length(doc="depth of the keyway from the bore's circle, at its middle")
-    keyway_angle: float = _angle(doc="direction of the keyway")
+    keyway_angle: float = _angle(doc="direction of the keyway, or of the flat")
     bore_flat: float = _length(doc="D-shaped bore: flat to opposite side, more than half the bore")
     bolts: int = _count(doc="number of bolt holes", le=100)
     bolt_circle: float = _length(doc="diameter of the bolt circle")
@@ -143,21 +158,34 @@ class WheelBlank(ShortRepr):
     hub_diameter: float = _length(doc="diameter of the hub, larger than the bore with its keyway")
     hub_front: float = _length(doc="height of the hub on the front face (+z)")
     hub_back: float = _length(doc="height of the hub on the back face")
+    set_screw: float = _length(
+        doc="set screw in the middle of the hub (of the one in front if there are two): 4 for M4; "
+        "made with its tapping drill"
+    )
+    set_screw_angle: float = _angle(doc="direction of the set screw, from the keyway or the flat")
     lightening_holes: int = _count(doc="number of round lightening holes", le=36)
     rim: float | None = least_metal(
-        example=6, doc="least metal between lightening holes and roots; 2.7 modules if left out"
+        example=6,
+        doc="least metal between lightening holes and roots, profile or groove; if left out 2.7 "
+        "modules of a wheel, two thirds of the thickness of a cam, the depth of a groove around it",
     )
     web: float | None = least_metal(
         example=5,
         doc="least metal between lightening holes, and from them to bore, hub and bolt holes; the "
         "rim if left out",
     )
-    stop_pin: float = _length(doc="diameter of the stop pin, which runs in a slot of an open wheel")
-    timing_marks: bool = param(
-        TEXT, default=True, doc="whether timing marks face each other at phi1 = 0"
+    chamfer: float = _length(
+        doc="chamfer of the edges of both faces, at 45 deg: of outline, hub and bore", le=100
     )
-    mark_diameter: float | None = positive_length(
-        example=1, doc="diameter of the timing marks; 0.4 modules if left out"
+    rotation_arrow: bool = param(
+        TEXT,
+        default=False,
+        doc="whether an arrow in the front face shows how the part turns",
+    )
+    zero_mark: bool = param(
+        TEXT,
+        default=False,
+        doc="whether a mark in the front face shows where the follower begins its motion",
     )
     density: float | None = param(
         DENSITY,
@@ -167,13 +195,12 @@ class WheelBlank(ShortRepr):
         example=7850,
         doc="density, for mass, centre of mass, unbalance and inertia",
     )
-    clearance: float = allowance(doc="what is taken off the toothed edge, along its normal")
-    clearance_bores: bool = param(
-        TEXT,
-        default=False,
-        doc="whether bores, bolt holes and stop slots are widened by the clearance too",
-    )
-    tip_rounding: float = _length(doc="radius of the rounded tip edges of the teeth", le=100)
+    stop_pin: float = fixed(0.0)
+    timing_marks: bool = fixed(False)
+    mark_diameter: float | None = fixed(None)
+    clearance: float = fixed(0.0)
+    clearance_bores: bool = fixed(False)
+    tip_rounding: float = fixed(0.0)
 
     @property
     def bore(self) -> float:
@@ -189,12 +216,24 @@ class WheelBlank(ShortRepr):
         return float((floor**2 + 0.25 * self.keyway_width**2) ** 0.5)
 
     @property
+    def core_reach(self) -> float:
+        """Largest radius of bore and hub, mm."""
+        return max(self.bore_reach, 0.5 * self.hub_diameter)
+
+    @property
+    def plain(self) -> bool:
+        """Whether it has a round bore, and nothing else that is made."""
+        rest = (self.keyway_width, self.bore_flat, self.bolts, self.hub_diameter, self.chamfer)
+        marks = (self.lightening_holes, self.rotation_arrow, self.zero_mark)
+        return not any((*rest, *marks))
+
+    @property
     def widening(self) -> float:
         """By how much bores, bolt holes and stop slots are widened, mm."""
         return 2.0 * self.clearance if self.clearance_bores else 0.0
 
     @property
-    def widened(self) -> WheelBlank:
+    def widened(self) -> Self:
         """The blank with the widened sizes of its bore, bolt holes and stop slot.
 
         A keyway keeps its depth, which counts from the widened bore.
@@ -205,11 +244,7 @@ class WheelBlank(ShortRepr):
         wider = {name: size + self.widening for name, size in sizes.items() if size}
         return replace(self, clearance_bores=False, **wider)
 
-    rules = (
-        *OPENING_RULES,
-        *widening_rules("bore_diameter", "bolts", "stop_pin"),
-        only_with(("mark_diameter",), "timing_marks", True),
-    )
+    rules = OPENING_RULES
 
     def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, None, message, allowed."""
@@ -220,6 +255,69 @@ class WheelBlank(ShortRepr):
         if self.hub_diameter and self.hub_diameter <= reach:
             rule = f"above {formatted(reach)} mm, the diameter across the bore"
             yield "hub_diameter", None, "the bore is as large as the hub", rule
+        if self.set_screw and self.set_screw not in TAPPED:
+            sizes = ", ".join(formatted(size) for size in TAPPED)
+            yield "set_screw", None, "there is no coarse thread of this diameter", sizes
+
+
+@dataclass(frozen=True, kw_only=True)
+class CylinderBlank(ShaftBlank):
+    """Bore, hub, holes, marks and material of a cam in space.
+
+    Parameters
+    ----------
+    stop_pin, timing_marks, mark_diameter, clearance, clearance_bores, tip_rounding
+        They belong to edges that are cut, and to teeth.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.CylinderBlank(bore_diameter=20.0, density=7850.0)
+    CylinderBlank(bore_diameter=20, density=7850)
+    """
+
+    without: ClassVar[str] = "a cam in space has what parts on shafts have, and no edge that is cut"
+    """Why it does not have what other blanks have."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class WheelBlank(ShaftBlank):
+    """Bore, hub, holes, marks and edges of one wheel, mm and rad; 0 or None means none.
+
+    Parameters
+    ----------
+    zero_mark
+        A wheel has timing marks.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> blank = gc.WheelBlank(bore_diameter=16.0, keyway_width=5.0, keyway_depth=2.3)
+    >>> round(blank.bore_reach, 3)
+    10.599
+    """
+
+    zero_mark: bool = fixed(False)
+    stop_pin: float = _length(doc="diameter of the stop pin, which runs in a slot of an open wheel")
+    timing_marks: bool = param(
+        TEXT, default=True, doc="whether timing marks face each other at phi1 = 0"
+    )
+    mark_diameter: float | None = positive_length(
+        example=1, doc="diameter of the timing marks; 0.4 modules if left out"
+    )
+    clearance: float = allowance(doc="what is taken off the toothed edge, along its normal")
+    clearance_bores: bool = param(
+        TEXT,
+        default=False,
+        doc="whether bores, bolt holes and stop slots are widened by the clearance too",
+    )
+    tip_rounding: float = _length(doc="radius of the rounded tip edges of the teeth", le=100)
+
+    rules = (
+        *OPENING_RULES,
+        *widening_rules("bore_diameter", "bolts", "stop_pin"),
+        only_with(("mark_diameter",), "timing_marks", True),
+    )
 
 
 def _both(name: str, hint: Any, default: Any) -> tuple[str, Any, Any]:
@@ -246,6 +344,7 @@ else:
         [
             _both(one.name, get_type_hints(WheelBlank)[one.name], one.default)
             for one in fields(WheelBlank)
+            if one.init
         ],
         frozen=True,
         kw_only=True,

@@ -7,18 +7,21 @@ heights. Outlines, openings or both may be toothed.
 A *part* is a body of layers, in its wheel's frame: its toothed plate from z = 0 to its width, hubs
 beyond. A *stepped* part has several outlines, one above the other, all of the same height.
 *Openings* go right through, also through the hub; each step may have an *inner* edge, such as the
-teeth of a ring. *Pockets* are cut into one face: a *mark* is a shallow round one, engraved in the
-upper face, a *recess* is milled into either face.
+teeth of a ring. *Pockets* are cut into its surface: *marks*, shallow round ones, and an *arrow* are
+engraved in the upper face, a *recess* is milled into either face, a *bevel* is what the chamfer of
+an edge takes.
 
 Depends on numeric; shapely only inside `Part.region`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+import cmath
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, Protocol, cast
+from typing import TYPE_CHECKING, Any, Final, Literal, Protocol, cast
 
 import numpy as np
 
@@ -35,6 +38,12 @@ if TYPE_CHECKING:
 
 Kind = Literal["BORE", "HOLE", "SLOT", "INNER", "GROOVE"]
 """Purpose of an opening: shaft, bolts or lightening, stop pin, inner teeth, roller."""
+
+_FINE: Final = 1e-8
+"""Chord error of a bore where a set screw meets it, over the radius of its hole."""
+
+_CHORDS: Final = 2048
+"""Chords of the hole of a set screw at which its depth is taken."""
 
 Edge = Contour | Circle | Loop
 """A closed plane curve, counter-clockwise, with moments, length, reach and points."""
@@ -66,11 +75,15 @@ class Opening(ShortRepr):
         Its edge, in the part's frame.
     name : str
         Its name in messages, such as ``bolt hole 2``.
+    fits : mapping of str to float, mm
+        Its sizes that have tolerance classes, each a `gearcam.parts.fits.FitSize`: ``diameter``,
+        ``keyway``.
     """
 
     kind: Kind
     shape: Edge
     name: str
+    fits: Mapping[str, float] = field(default_factory=dict)
 
     def as_dict(self) -> dict[str, Any]:
         """Return the opening as JSON data: kind and name, for a circle also centre and diameter."""
@@ -126,6 +139,102 @@ class Recess(Layer):
     front: bool = True
 
 
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Bevel(Layer):
+    """What a chamfer at 45 deg takes from an edge in a face.
+
+    Parameters
+    ----------
+    edge : Contour or Circle or Loop
+        The edge.
+    middle, face : Contour or Circle
+        Its parallels at half the depth and in the face.
+    up : bool
+        Whether the face is an upper one.
+    hollow : bool
+        Whether the metal is outside the edge, as of a bore.
+    """
+
+    middle: Contour | Circle
+    face: Contour | Circle
+    up: bool
+    hollow: bool
+
+    def on(self, layer: Layer) -> bool:
+        """Return whether it is of the edge of a `layer`, in its face on this side."""
+        level = self.high == layer.high if self.up else self.low == layer.low
+        one, other = self.edge, layer.edge
+        round_ones = isinstance(one, Circle) and isinstance(other, Circle)
+        alike = round_ones and (one.center, one.diameter) == (other.center, other.diameter)
+        return level and not self.hollow and (one is other or alike)
+
+    @property
+    def edges(self) -> tuple[Edge, ...]:
+        """Its edge in the face."""
+        return (self.face,)
+
+    @property
+    def moments(self) -> Moments:
+        """Moments of the plane region, on the average over its height."""
+        # areas between parallels are quadratic in the distance, for which this is exact
+        inside = self.edge.moments + 4.0 * self.middle.moments + self.face.moments
+        taken = self.edge.moments - (1.0 / 6.0) * inside
+        return -1.0 * taken if self.hollow else taken
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ScrewHole(Layer):
+    """The tapping hole of a set screw, from the bore through a hub.
+
+    Parameters
+    ----------
+    edge : Circle
+        The hub.
+    openings : tuple of Opening
+        The bore.
+    size : float, mm
+        Nominal diameter of the thread: 4 of M4.
+    angle : float, rad
+        Its direction.
+    """
+
+    size: float
+    angle: float
+
+    @property
+    def drill(self) -> float:
+        """Its diameter, mm."""
+        return self.height
+
+    @property
+    def middle(self) -> float:
+        """Height of its axis, mm."""
+        return 0.5 * (self.low + self.high)
+
+    @property
+    def moments(self) -> Moments:
+        """Moments of its plane region, on the average over its height."""
+        (bore,), radius = (one.shape for one in self.openings), 0.5 * self.drill
+        edge = bore.polyline(_FINE * radius) * np.exp(-1j * self.angle)
+        edge = edge[edge.real > 0.0]
+        level = np.round(edge.imag, 9)
+        # the walls of a keyway are at one height: its floor is within them
+        edge = edge[np.lexsort((np.where(level < 0.0, edge.real, -edge.real), level))]
+        steps = np.arange(1, _CHORDS + 1) * math.pi / (_CHORDS + 1)
+        # Gauss points for the width of the hole over its height as the weight
+        aside, weights = radius * np.cos(steps), np.sin(steps) ** 2
+        inner = np.interp(aside, edge.imag, edge.real)
+        outer = np.sqrt((0.5 * cast("Circle", self.edge).diameter) ** 2 - aside**2)
+        weights *= math.pi / (_CHORDS + 1) * radius
+        first = complex((weights * 0.5 * (outer**2 - inner**2)).sum())
+        polar = (weights * ((outer**3 - inner**3) / 3.0 + aside**2 * (outer - inner))).sum()
+        return Moments(
+            area=float((weights * (outer - inner)).sum()),
+            first=first * cmath.exp(1j * self.angle),
+            polar=float(polar),
+        )
+
+
 @dataclass(frozen=True, kw_only=True)
 class Hub:
     """A round boss around the axis: `diameter`, and projection in `front` and at the `back`, mm."""
@@ -152,9 +261,25 @@ class Mark(ShortRepr):
     depth: float
 
     @property
-    def circle(self) -> Circle:
+    def edge(self) -> Circle:
         """Its edge."""
         return Circle(center=self.center, diameter=self.diameter)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Arrow(ShortRepr):
+    """An arrow engraved in the upper face, which shows how a part moves.
+
+    Parameters
+    ----------
+    edge : Loop
+        Its outline, in the part's frame.
+    depth : float, mm
+        Its depth.
+    """
+
+    edge: Loop
+    depth: float
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -180,6 +305,12 @@ class Part(ShortRepr, NotebookView):
         Marks engraved in the face z = width.
     recesses : tuple of Recess
         Pockets milled into either face; they do not overlap in depth.
+    arrow : Arrow or None
+        How it moves, engraved in the face z = width.
+    screw : ScrewHole or None
+        Set screw in a hub.
+    bevels : tuple of Bevel
+        Chamfers of edges in faces.
     turns : bool
         Whether it turns about the origin, if that lies within its outline.
 
@@ -198,6 +329,9 @@ class Part(ShortRepr, NotebookView):
     hub: Hub | None = None
     marks: tuple[Mark, ...] = ()
     recesses: tuple[Recess, ...] = ()
+    arrow: Arrow | None = None
+    screw: ScrewHole | None = None
+    bevels: tuple[Bevel, ...] = ()
     turns: bool = True
 
     def __post_init__(self) -> None:
@@ -237,7 +371,7 @@ class Part(ShortRepr, NotebookView):
         """Return a drawing of the (lowest) outline with its openings, SVG, in the part's frame."""
         step = self.steps[0]
         edges = [step.edge, *(opening.shape for opening in step.openings)]
-        for pocket in self.pockets:
+        for pocket in (*self._engravings, *self.recesses):
             edges += [pocket.edge, *(island.shape for island in pocket.openings)]
         return renderer().outlines(
             self.facts.headline, [edge.polyline(self.tolerance) for edge in edges]
@@ -287,23 +421,40 @@ class Part(ShortRepr, NotebookView):
         """All layers of the part."""
         return self.steps + self.bosses
 
+    @property
+    def engraved(self) -> tuple[Mark | Arrow, ...]:
+        """What is engraved in the upper face: marks and the arrow."""
+        return (*self.marks, *(() if self.arrow is None else (self.arrow,)))
+
+    @cached_property
+    def _engravings(self) -> tuple[Layer, ...]:
+        return tuple(
+            Layer(edge=one.edge, low=self.width - one.depth, high=self.width)
+            for one in self.engraved
+        )
+
     @cached_property
     def pockets(self) -> tuple[Layer, ...]:
-        """Marks and recesses, cut into one of the faces."""
-        marks = (
-            Layer(edge=mark.circle, low=self.width - mark.depth, high=self.width)
-            for mark in self.marks
-        )
-        return (*marks, *self.recesses)
+        """What is cut into its surface: engravings, recesses, chamfers, the hole of a screw."""
+        screw = () if self.screw is None else (self.screw,)
+        return (*self._engravings, *self.recesses, *self.bevels, *screw)
 
     def cutters(self, overshoot: float) -> tuple[Layer, ...]:
-        """Return the recesses as solids to subtract, extended beyond their face by `overshoot`."""
-        return tuple(
-            replace(one, high=self.width + overshoot * one.height)
-            if one.front
-            else replace(one, low=-overshoot * one.height)
-            for one in self.recesses
+        """Return engravings and recesses as solids to subtract.
+
+        They go beyond their face by `overshoot`, over their depth.
+        """
+        front = (*self._engravings, *(one for one in self.recesses if one.front))
+        back = (one for one in self.recesses if not one.front)
+        return (
+            *(replace(one, high=self.width + overshoot * one.height) for one in front),
+            *(replace(one, low=-overshoot * one.height) for one in back),
         )
+
+    @property
+    def chamfer(self) -> float:
+        """The chamfer of its edges, mm; 0 without one."""
+        return self.bevels[0].height if self.bevels else 0.0
 
     @cached_property
     def volume(self) -> float:
@@ -328,9 +479,14 @@ class Part(ShortRepr, NotebookView):
         return (high - low).real, (high - low).imag, self.thickness
 
     @property
+    def ends(self) -> tuple[float, float]:
+        """Heights of the lowest and the highest face, mm."""
+        return min(one.low for one in self.layers), max(one.high for one in self.layers)
+
+    @property
     def thickness(self) -> float:
         """Height from the lowest to the highest face, mm."""
-        return max(layer.high for layer in self.layers) - min(layer.low for layer in self.layers)
+        return self.ends[1] - self.ends[0]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

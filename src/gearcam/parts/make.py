@@ -6,13 +6,25 @@ Refused: openings, hubs and marks without space.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 
 from gearcam.base.adjustments import Adjustment
+from gearcam.base.numerals import formatted
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.polygons import room_around
-from gearcam.parts.blank import WheelBlank
-from gearcam.parts.body import Hub, Mark, Part, Recess
+from gearcam.parts.blank import TAPPED, ShaftBlank
+from gearcam.parts.body import (
+    Bevel,
+    Edge,
+    Hub,
+    Layer,
+    Mark,
+    Opening,
+    Part,
+    Recess,
+    ScrewHole,
+)
 from gearcam.parts.openings import Stock, Workpiece, openings
 from gearcam.parts.shapes import Circle
 
@@ -21,13 +33,14 @@ def make_part(
     name: str,
     contours: Sequence[Contour | Circle],
     width: float,
-    blank: WheelBlank,
+    blank: ShaftBlank,
     work: Workpiece,
     marker: Callable[[], Mark] | None = None,
     *,
     inner: Sequence[Contour] = (),
     recesses: tuple[Recess, ...] = (),
-    room: Sequence[Contour] = (),
+    room: Sequence[Contour | Circle] = (),
+    way: complex = 1.0,
 ) -> Part:
     """Return the part of a wheel or a ring.
 
@@ -39,18 +52,20 @@ def make_part(
         True finished outlines: one, or those of the steps; for a ring they may be circles.
     width : float, mm
         Width of the toothed plate.
-    blank : WheelBlank
+    blank : ShaftBlank
         Settings of the blank.
     work : Workpiece
         The wheel.
     marker : callable, optional
-        Returns the timing mark; called only if marks are requested.
+        Returns the timing mark or zero mark; called only if one is requested.
     inner : sequence of Contour
         For a ring: the true inner edges.
     recesses : tuple of Recess
         Pockets milled into its faces.
-    room : sequence of Contour
-        Contours that openings and hub must lie within; by default the outlines.
+    room : sequence of Contour or Circle
+        Edges that openings and hub must lie within; by default the outlines.
+    way : complex
+        How it moves (see `gearcam.parts.arrows.arrow`).
 
     Returns
     -------
@@ -59,14 +74,18 @@ def make_part(
     Raises
     ------
     InfeasibleError
-        If an opening, hub or mark has no space.
+        If an opening, hub, screw, mark, arrow or chamfer has no space.
     """
     found = openings(blank, room or contours, work, inner)
     hub = None
     if blank.hub_diameter:
         hub = Hub(diameter=blank.hub_diameter, front=blank.hub_front, back=blank.hub_back)
         _demand_within(hub, room or contours, work)
-    marks = (marker(),) if marker is not None and blank.timing_marks else ()
+    marked = blank.timing_marks or blank.zero_mark
+    marks = (marker(),) if marker is not None and marked else ()
+    screw = None
+    if hub is not None and blank.set_screw:
+        screw = _screw(blank, hub, found, width, work)
     part = Part(
         name=name,
         contours=tuple(contours),
@@ -76,19 +95,109 @@ def make_part(
         hub=hub,
         marks=marks,
         recesses=recesses,
+        screw=screw,
     )
     _demand_marks(part, blank, work)
-    return part
+    if blank.rotation_arrow:
+        from gearcam.parts.arrows import arrow
+
+        part = replace(part, arrow=arrow(part, work, way, blank.core_reach))
+    return replace(part, bevels=tuple(bevels(part, blank.chamfer, work)))
 
 
-def finished(contour: Contour, blank: WheelBlank, work: Workpiece) -> Contour:
+def _screw(
+    blank: ShaftBlank, hub: Hub, found: Sequence[Opening], width: float, work: Workpiece
+) -> ScrewHole:
+    """Return the hole of a set screw, in the middle of the hub."""
+    drill, height = TAPPED[blank.set_screw], hub.front or hub.back
+    if height <= drill:
+        key = "hub_front_mm" if hub.front else "hub_back_mm"
+        what = f"the set screw, with a hole of {formatted(drill)} mm, is as wide as the hub is high"
+        near = Adjustment(near={work.key(key): 2.0 * drill})
+        raise work.refusal(what, height, drill, "twice the hole is usual", (near,), f"blank.{key}")
+    middle = width + 0.5 * height if hub.front else -0.5 * height
+    bore = next(one for one in found if one.kind == "BORE")
+    return ScrewHole(
+        edge=Circle(center=0j, diameter=hub.diameter),
+        openings=(bore,),
+        low=middle - 0.5 * drill,
+        high=middle + 0.5 * drill,
+        size=blank.set_screw,
+        angle=blank.keyway_angle + blank.set_screw_angle,
+    )
+
+
+def bevels(
+    part: Part, size: float, work: Workpiece, outside: Sequence[Edge] = ()
+) -> Iterator[Bevel]:
+    """Yield the chamfers of a part: of outlines, hubs, inner edges and bore, in both faces.
+
+    Parameters
+    ----------
+    part : Part
+        The part without them.
+    size : float, mm
+        The chamfer; 0 for none.
+    work : Workpiece
+        What it is made from.
+    outside : sequence of Edge
+        The edges of the lower and of the upper face, where they are not those of the part.
+
+    Raises
+    ------
+    InfeasibleError
+        If it leaves no simple edge, or those of both faces meet.
+    """
+    if not size:
+        return
+    least = min(layer.height for layer in part.layers)
+    if 2.0 * size >= least:
+        what = "the chamfers of both faces meet"
+        near = (Adjustment(near={work.key("chamfer_mm"): 0.25 * least}),)
+        raise work.refusal(what, size, 0.5 * least, "", near, "blank.chamfer_mm")
+    for up in (False, True):
+        layer = part.steps[-1 if up else 0]
+        rims = [(outside[up] if outside else layer.edge, layer, False)]
+        rims += [(one.shape, layer, True) for one in layer.openings if one.kind == "INNER"]
+        rims += [(one.edge, one, False) for one in part.bosses if (one.low > 0.0) == up]
+        far = rims[-1][1]
+        rims += [(one.shape, far, True) for one in part.openings if one.kind == "BORE"]
+        for edge, of, hollow in rims:
+            yield _bevel(part, edge, of, size, work, up=up, hollow=hollow)
+
+
+def _bevel(
+    part: Part, edge: Edge, layer: Layer, size: float, work: Workpiece, *, up: bool, hollow: bool
+) -> Bevel:
+    """Return the chamfer of an edge in the upper or the lower face of a layer."""
+    from gearcam.parts.parallel import moved, sized
+
+    whole = edge if isinstance(edge, Contour) else edge.contour(part.tolerance)
+
+    def parallel(by: float) -> Contour:
+        return moved(whole, by if hollow else -by)
+
+    face = sized(parallel, size, f"{work.name}, blank.chamfer_mm", "chamfer")
+    low, high = (layer.high - size, layer.high) if up else (layer.low, layer.low + size)
+    return Bevel(
+        edge=edge,
+        middle=parallel(0.5 * size),
+        face=face,
+        low=low,
+        high=high,
+        up=up,
+        hollow=hollow,
+    )
+
+
+def finished(contour: Contour, blank: ShaftBlank, work: Workpiece) -> Contour:
     """Return an outline with clearance, then rounded edges.
 
     Parameters
     ----------
     contour : Contour
         An outline without either.
-    blank : WheelBlank
+    blank : ShaftBlank
         With both sizes.
     work : Workpiece
         The part, for messages.
@@ -125,7 +234,7 @@ def _demand_within(hub: Hub, contours: Sequence[Contour | Circle], work: Workpie
         raise work.refusal(what, hub.diameter, room, "at the limit they touch", smaller, place)
 
 
-def _demand_marks(part: Part, blank: WheelBlank, work: Workpiece) -> None:
+def _demand_marks(part: Part, blank: ShaftBlank, work: Workpiece) -> None:
     """Refuse a mark that meets an opening, the hub or the outline."""
     if not part.marks:
         return
@@ -146,7 +255,7 @@ def _demand_marks(part: Part, blank: WheelBlank, work: Workpiece) -> None:
             raise work.refusal(what, mark.diameter, limit, note, adjustments)
 
 
-def _between_bolts(blank: WheelBlank, work: Workpiece) -> dict[str, object]:
+def _between_bolts(blank: ShaftBlank, work: Workpiece) -> dict[str, object]:
     """Return the remedy that turns a bolt circle by half a step, if there are bolts."""
     if not blank.bolts:
         return {}

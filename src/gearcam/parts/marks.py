@@ -1,7 +1,7 @@
-"""Timing marks: two dimples that face each other on the line of centres at phi1 = 0.
+"""Marks: timing marks of a pair, two dimples that face each other at phi1 = 0; zero marks of cams.
 
-They show the one phase in which the wheels are to be assembled. A rim between bore and root that
-is too thin for them is refused.
+Timing marks are on the line of centres: they show the one phase in which the wheels are assembled.
+A rim between bore and root that is too thin for them is refused.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import Final
 from gearcam.base.adjustments import Adjustment
 from gearcam.base.errors import beyond_limit
 from gearcam.base.numerals import formatted
+from gearcam.parts.arrows import DEPTH_PART, STROKES
 from gearcam.parts.body import Mark
 
 MARK_DIAMETER: Final = 0.4
@@ -24,11 +25,35 @@ MARK_GAP: Final = 0.2
 MARK_DEPTH: Final = 0.5
 """Depth of a mark, mm, in wheels of sufficient width: engraved by laser or drill point."""
 
-MARK_DEPTH_PART: Final = 0.1
-"""Largest depth of a mark, as a share of the width."""
-
 RIM_PART: Final = 1 / 3
 """Largest size of a mark with its gap, as a share of the rim between bore and root."""
+
+
+_DIMPLES: Final = {"printing": 2.0, "laser": 1.0, "wire": 1.0, "mill": 1.5}
+"""Diameter of zero marks by process, mm."""
+
+
+def zero_mark(point: complex, inwards: complex, width: float, process: str) -> Mark:
+    """Return the mark of a cam that shows where its follower begins its motion.
+
+    Parameters
+    ----------
+    point : complex, mm
+        Point of contact at the zero of the motion, in the part's frame.
+    inwards : complex
+        Unit normal into the metal.
+    width : float, mm
+        Width of the part.
+    process : str
+        How it is made.
+
+    Returns
+    -------
+    Mark
+        A diameter away from the edge.
+    """
+    size, depth = _DIMPLES[process], min(STROKES[process][1], DEPTH_PART * width)
+    return Mark(center=point + 1.5 * size * inwards, diameter=size, depth=depth)
 
 
 def timing_mark(
@@ -113,5 +138,5 @@ def timing_mark(
     diameter = diameter or min(MARK_DIAMETER * module, largest)
     gap = min(MARK_GAP * module, RIM_PART * rim)
     radius = pitch_radius + outward * (dedendum_mm + gap + 0.5 * diameter) / lean
-    depth = min(MARK_DEPTH, MARK_DEPTH_PART * width)
+    depth = min(MARK_DEPTH, DEPTH_PART * width)
     return Mark(center=cmath.rect(radius, direction), diameter=diameter, depth=depth)

@@ -29,7 +29,7 @@ from gearcam.base.quantities import params_of
 from gearcam.numeric.arrays import Array, Plane, as_pairs
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.polygons import room_around
-from gearcam.parts.blank import WheelBlank, serving
+from gearcam.parts.blank import ShaftBlank, serving
 from gearcam.parts.body import Edge, Opening
 from gearcam.parts.shapes import Circle, Loop
 
@@ -84,6 +84,8 @@ class Workpiece:
         1 or 2; None for a single part.
     within : str
         Name of the boundary of its openings.
+    process : str
+        How it is made, which decides how wide and deep its marks are.
     """
 
     name: str
@@ -91,6 +93,7 @@ class Workpiece:
     travel: float | None = None
     wheel: int | None = None
     within: str = "the outline"
+    process: str = "mill"
 
     def points(self, edge: Edge) -> Array:
         """Return points of an `edge`, (n, 2), mm, for tests of overlap."""
@@ -105,9 +108,9 @@ class Workpiece:
         """Return the dotted key of its value of key `name` in ``[blank]``."""
         return f"blank.{name}" if self.wheel is None else f"blank.{name}[{self.wheel - 1}]"
 
-    def without(self, blank: WheelBlank, name: str) -> dict[str, object]:
+    def without(self, blank: ShaftBlank, name: str) -> dict[str, object]:
         """Return the change of a `blank` that leaves out `name`, with all that serves it."""
-        params = params_of(WheelBlank)
+        params = params_of(type(blank))
         names = [one for one in (name, *sorted(serving((name,)))) if getattr(blank, one)]
         return {self.key(params[one].key(one)): 0 for one in names}
 
@@ -172,12 +175,12 @@ class Stock(ShortRepr):
         return outlines, holes
 
 
-def bore(blank: WheelBlank) -> Circle | Loop:
+def bore(blank: ShaftBlank) -> Circle | Loop:
     """Return the bore with its keyway or flat.
 
     Parameters
     ----------
-    blank : WheelBlank
+    blank : ShaftBlank
         With the sizes of its bore; the direction of keyway and flat is the same.
 
     Returns
@@ -209,7 +212,7 @@ def _with_arc(corners: list[complex], angle: float, turn: complex) -> Loop:
     return Loop(points=points, bulges=bulges)
 
 
-def _bolts(blank: WheelBlank) -> Iterator[Opening]:
+def _bolts(blank: ShaftBlank) -> Iterator[Opening]:
     for number in range(blank.bolts):
         angle = blank.bolt_angle + 2.0 * math.pi * number / blank.bolts
         center = cmath.rect(0.5 * blank.bolt_circle, angle)
@@ -218,13 +221,13 @@ def _bolts(blank: WheelBlank) -> Iterator[Opening]:
 
 
 def openings(
-    blank: WheelBlank, contours: Sequence[Edge], work: Workpiece, inner: Sequence[Edge] = ()
+    blank: ShaftBlank, contours: Sequence[Edge], work: Workpiece, inner: Sequence[Edge] = ()
 ) -> tuple[Opening, ...]:
     """Return all openings of a wheel.
 
     Parameters
     ----------
-    blank : WheelBlank
+    blank : ShaftBlank
         Settings of the blank.
     contours : sequence of Contour or Circle
         The outlines of its steps.
@@ -353,7 +356,7 @@ def _no_room(
     return work.refusal(f"the {opening.name} meets {what}", value, limit, note, adjustments)
 
 
-def _slot(blank: WheelBlank, solid: Polygon, work: Workpiece, chord: float) -> Opening:
+def _slot(blank: ShaftBlank, solid: Polygon, work: Workpiece, chord: float) -> Opening:
     """Return the slot for the stop pin of an open wheel.
 
     Wheel 1 turns by -phi1 and wheel 2 by phi2: in the wheel's frame the pin, on the line of
@@ -415,7 +418,7 @@ def _arc_slot(radius: float, start: float, sweep: float, width: float) -> Loop:
 
 
 def _lightening(
-    blank: WheelBlank, solid: Polygon, others: Sequence[Opening], work: Workpiece
+    blank: ShaftBlank, solid: Polygon, others: Sequence[Opening], work: Workpiece
 ) -> Iterator[Opening]:
     """Yield the largest circle in each sector that leaves rim and web."""
     from shapely import Point, Polygon, maximum_inscribed_circle, union_all
@@ -461,7 +464,7 @@ def _sector(middle: float, half: float, far: float, web: float) -> Polygon:
 
 
 def _no_lightening(
-    number: int, solid: Polygon, core: float, rim: float, blank: WheelBlank, work: Workpiece
+    number: int, solid: Polygon, core: float, rim: float, blank: ShaftBlank, work: Workpiece
 ) -> InfeasibleError:
     from shapely import Point
 

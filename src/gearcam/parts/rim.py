@@ -19,7 +19,7 @@ from gearcam.base.adjustments import Adjustment
 from gearcam.base.numerals import formatted, rounded_down
 from gearcam.numeric.arrays import Array, as_pairs
 from gearcam.numeric.contour import Contour
-from gearcam.parts.blank import WheelBlank
+from gearcam.parts.blank import ShaftBlank
 from gearcam.parts.body import Edge
 from gearcam.parts.openings import Stock
 
@@ -53,7 +53,7 @@ def is_around(outside: Edge, inner: Contour) -> bool:
 
 
 def demand_bolts(
-    blank: WheelBlank,
+    blank: ShaftBlank,
     stock: Stock,
     wall: float,
     outside: Callable[[float], dict[str, object]],
@@ -62,7 +62,7 @@ def demand_bolts(
 
     Parameters
     ----------
-    blank : WheelBlank
+    blank : ShaftBlank
         With the bolts.
     stock : Stock
         The ring without them, in its own frame.
@@ -128,7 +128,7 @@ def _hole(solid: Polygon) -> Polygon | None:
     return Polygon(solid.interiors[0]) if len(solid.interiors) else None
 
 
-def _middles(blank: WheelBlank, circles: Array) -> Any:
+def _middles(blank: ShaftBlank, circles: Array) -> Any:
     """Return the centres of the holes on bolt circles, (bolts, n)."""
     from shapely import points
 
@@ -137,7 +137,7 @@ def _middles(blank: WheelBlank, circles: Array) -> Any:
     return points(spokes.real, spokes.imag)
 
 
-def _rooms(blank: WheelBlank, solid: Polygon, circles: Array) -> Array:
+def _rooms(blank: ShaftBlank, solid: Polygon, circles: Array) -> Array:
     """Return the diameters of the largest holes that fit on bolt circles, mm; 0 if none does."""
     middles = _middles(blank, circles)
     away = np.where(solid.contains(middles), solid.boundary.distance(middles), 0.0)

@@ -12,21 +12,22 @@ Depends on parts; manifold3d only inside the functions.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, singledispatch
-from typing import TYPE_CHECKING, Any, Final
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
 from gearcam.base.errors import GearcamError, MissingExtraError
 from gearcam.base.numerals import formatted
-from gearcam.numeric.arrays import Array, Plane, as_pairs
+from gearcam.numeric.arrays import Array, Ints, Plane, as_pairs
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.mesh import Mesh
-from gearcam.parts.body import Body, Layer, Mark, Part
-from gearcam.parts.shapes import circle_segments
+from gearcam.parts.body import Bevel, Body, Layer, Part
+from gearcam.parts.shapes import Circle, circle_segments
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -99,19 +100,97 @@ def solid(body: Body) -> Mesh:
 def _(part: Part) -> Mesh:
     import manifold3d
 
-    slabs = [_slab(manifold3d, layer, part.tolerance) for layer in part.layers]
+    bevels = [one for one in part.bevels if not one.hollow]
+    slabs = [_slab(manifold3d, layer, part.tolerance, bevels) for layer in part.layers]
     made = slabs[0]
     if len(slabs) > 1:
         made = manifold3d.Manifold.batch_boolean(slabs, manifold3d.OpType.Add)
-    for mark in part.marks:
-        made = made - _cutter(manifold3d, mark, part)
-    for recess in part.cutters(OVERSHOOT):
-        made = made - _slab(manifold3d, recess, part.tolerance)
+    for cutter in _cutters(manifold3d, part):
+        made = made - cutter
     mesh = _mesh(made)
     if not mesh.watertight:
         raise SolidError(f"{part.name}: the solid is empty or open")
     demand_volume(part, mesh.volume, volume_error(part))
     return mesh
+
+
+@libraries()
+def fitted(body: Mesh, core: Part, height: float) -> Mesh:
+    """Return a body with what a part in its core has: openings, hubs, marks, chamfers.
+
+    Parameters
+    ----------
+    body : Mesh
+        Closed, without openings.
+    core : Part
+        A round part within it, with the same faces.
+    height : float, mm
+        Where z = 0 of the part is in the frame of the body.
+
+    Returns
+    -------
+    Mesh
+
+    Raises
+    ------
+    MissingExtraError
+        If manifold3d is not installed.
+    SolidError
+        If the result is open.
+    """
+    import manifold3d
+
+    made = _manifold(manifold3d, body).translate((0.0, 0.0, -height))
+    bevels = [one for one in core.bevels if not one.hollow]
+    for bevel in bevels:
+        if not any(bevel.on(layer) for layer in core.layers):
+            made = made - _wedge(manifold3d, bevel, core.tolerance)
+    for boss in core.bosses:
+        made = made + _slab(manifold3d, replace(boss, openings=()), core.tolerance, bevels)
+    low, high = (core.ends[0] - OVERSHOOT, core.ends[1] + OVERSHOOT)
+    for opening in core.openings:
+        hole = Layer(edge=opening.shape, low=low, high=high)
+        made = made - _slab(manifold3d, hole, core.tolerance)
+    for cutter in _cutters(manifold3d, core):
+        made = made - cutter
+    mesh = _mesh(made.translate((0.0, 0.0, height)))
+    if not mesh.watertight:
+        raise SolidError(f"{core.name}: the solid is empty or open")
+    return mesh
+
+
+def _wedge(manifold3d: Any, bevel: Bevel, tolerance: float) -> Manifold:
+    """Return what the chamfer of a round outer edge takes, a little larger."""
+    radius, size = bevel.edge.reach, bevel.height
+    over, side = 0.1 * size, 1.0 if bevel.up else -1.0
+    level = bevel.high if bevel.up else bevel.low
+    corners = [
+        (radius + over, level - side * (size + over)),
+        (radius + over, level + side * over),
+        (radius - size - over, level + side * over),
+    ]
+    section = manifold3d.CrossSection([corners[:: 1 if bevel.up else -1]])
+    return manifold3d.Manifold.revolve(section, circle_segments(2.0 * radius, tolerance))
+
+
+def _cutters(manifold3d: Any, part: Part) -> Iterator[Manifold]:
+    """Yield what is cut from the layers of a part."""
+    for cutter in part.cutters(OVERSHOOT):
+        yield _slab(manifold3d, cutter, part.tolerance)
+    for bevel in part.bevels:
+        if bevel.hollow:
+            edge, face = (one.polyline(part.tolerance) for one in (bevel.edge, bevel.face))
+            sections = [(edge, bevel.low), (face, bevel.high), (face, bevel.high + bevel.height)]
+            if not bevel.up:
+                sections = [(p, bevel.low + bevel.high - z) for p, z in reversed(sections)]
+            yield _loft(manifold3d, sections)
+    if part.screw is not None:
+        screw = part.screw
+        length = OVERSHOOT + 0.5 * cast("Circle", screw.edge).diameter
+        segments = circle_segments(screw.drill, part.tolerance)
+        hole = manifold3d.Manifold.cylinder(length, 0.5 * screw.drill, -1.0, segments)
+        turned = hole.rotate((0.0, 90.0, math.degrees(screw.angle)))
+        yield turned.translate((0.0, 0.0, screw.middle))
 
 
 def demand_volume(part: Part, volume: float, allowed: float) -> None:
@@ -139,8 +218,16 @@ def demand_volume(part: Part, volume: float, allowed: float) -> None:
         )
 
 
-def _slab(manifold3d: Any, layer: Layer, tolerance: float) -> Manifold:
-    """Return a layer: its edge extruded along z, less its openings, which run clockwise."""
+def _slab(
+    manifold3d: Any, layer: Layer, tolerance: float, bevels: Sequence[Bevel] = ()
+) -> Manifold:
+    """Return a layer: its edge extruded along z, less its openings, which run clockwise.
+
+    Those of the bevels that are of its edge are left out.
+    """
+    own = {one.up: one for one in bevels if one.on(layer)}
+    if own:
+        return _bevelled(manifold3d, layer, tolerance, own)
     holes = [opening.shape.polyline(tolerance)[::-1] for opening in layer.openings]
     loops = [as_pairs(loop) for loop in (layer.edge.polyline(tolerance), *holes)]
     times = math.ldexp(1.0, _FILLED - math.frexp(layer.edge.reach)[1])
@@ -149,12 +236,68 @@ def _slab(manifold3d: Any, layer: Layer, tolerance: float) -> Manifold:
     return slab.translate((0.0, 0.0, layer.low))
 
 
-def _cutter(manifold3d: Any, mark: Mark, part: Part) -> Manifold:
-    """Return the cylinder to subtract for a mark."""
-    segments = circle_segments(mark.diameter, part.contour.tolerance)
-    height = (1 + OVERSHOOT) * mark.depth
-    cylinder = manifold3d.Manifold.cylinder(height, 0.5 * mark.diameter, -1.0, segments)
-    return cylinder.translate((mark.center.real, mark.center.imag, part.width - mark.depth))
+def _bevelled(
+    manifold3d: Any, layer: Layer, tolerance: float, bevels: Mapping[bool, Bevel]
+) -> Manifold:
+    """Return a layer whose edge has bevels in its lower face (False) or its upper one (True)."""
+    edge = layer.edge.polyline(tolerance)
+    low, high = bevels.get(False), bevels.get(True)
+    sections = [(edge, layer.low), (edge, layer.high)]
+    if low:
+        sections = [(low.face.polyline(tolerance), layer.low), (edge, low.high), *sections[1:]]
+    if high:
+        sections = [*sections[:-1], (edge, high.low), (high.face.polyline(tolerance), layer.high)]
+    made = _loft(manifold3d, sections)
+    for opening in layer.openings:
+        hole = Layer(edge=opening.shape, low=layer.low - OVERSHOOT, high=layer.high + OVERSHOOT)
+        made = made - _slab(manifold3d, hole, tolerance)
+    return made
+
+
+def _loft(manifold3d: Any, sections: Sequence[tuple[Plane, float]]) -> Manifold:
+    """Return the solid through polygons at rising heights: the same, or one inside the other."""
+    starts = np.cumsum([0, *(len(points) for points, _ in sections)])
+    bottom, top = (
+        np.asarray(manifold3d.triangulate([as_pairs(points)]), dtype=np.int64)
+        for points in (sections[0][0], sections[-1][0])
+    )
+    faces = [bottom[:, ::-1], top + starts[-2]]
+    for k, ((one, _), (two, _)) in enumerate(pairwise(sections)):
+        here, there = starts[k] + np.arange(len(one)), starts[k + 1] + np.arange(len(two))
+        if one is two:
+            after, beyond = np.roll(here, -1), np.roll(there, -1)
+            faces += [np.stack([here, after, beyond], 1), np.stack([here, beyond, there], 1)]
+        else:
+            faces.append(_between(one, two, starts[k]))
+    points = [np.column_stack([as_pairs(one), np.full(len(one), z)]) for one, z in sections]
+    mesh = Mesh(vertices=np.concatenate(points), triangles=np.concatenate(faces))
+    return _manifold(manifold3d, mesh)
+
+
+def _between(lower: Plane, upper: Plane, start: int) -> Ints:
+    """Return triangles from a polygon to one above it, one of them inside the other.
+
+    Points of the lower one are counted from `start`, those of the upper one follow.
+    """
+    from shapely import Polygon, constrained_delaunay_triangles, get_coordinates
+
+    points = np.concatenate([lower, upper])
+    loops = [as_pairs(lower), as_pairs(upper)]
+    rising = Polygon(loops[0]).area > Polygon(loops[1]).area  # the surface is seen from above
+    outer, inner = loops if rising else loops[::-1]
+    made = get_coordinates(constrained_delaunay_triangles(Polygon(outer, [inner])))
+    corners = made[:, 0] + 1j * made[:, 1]
+    order = np.argsort(points)
+    found = order[np.searchsorted(points[order], corners)].reshape(-1, 4)[:, :3]
+    if (
+        len(found) != len(points)
+        or (points[found.ravel()] != corners.reshape(-1, 4)[:, :3].ravel()).any()
+    ):
+        raise SolidError("the chamfer leaves no simple edge")
+    a, b, c = points[found.T]
+    turned = (((b - a).conjugate() * (c - a)).imag > 0.0) != rising
+    found[turned] = found[turned, ::-1]
+    return start + found
 
 
 def _mesh(body: Manifold) -> Mesh:

@@ -222,7 +222,7 @@ def part_features(part: Part, step: int = 0, outline: str = OUTLINE) -> tuple[Fe
         Feature(layer=outline, shape=layer.edge),
         *walls.values(),
         *(Feature(layer=opening.kind, shape=opening.shape) for opening in layer.openings),
-        *(Feature(layer=MARK, shape=mark.circle) for mark in part.marks),
+        *(Feature(layer=MARK, shape=one.edge) for one in part.engraved),
     )
 
 

@@ -9,13 +9,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import Literal
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import (
     ANGLE,
-    DENSITY,
     LENGTH,
     LONGEST,
     REQUIRED,
@@ -225,36 +224,3 @@ class CylinderSpec(ShortRepr):
                 )
             rule += ": depth and clearance of the floor are less than the cylinder's radius"
             yield name, None, "the groove reaches the cam's axis", rule
-
-
-@dataclass(frozen=True, kw_only=True)
-class CylinderBlank(ShortRepr):
-    """The bore of a cylinder cam, and its material.
-
-    Examples
-    --------
-    >>> import gearcam as gc
-    >>> gc.CylinderBlank(bore_diameter=20.0, density=7850.0)
-    CylinderBlank(bore_diameter=20, density=7850)
-    """
-
-    bore_diameter: float | None = param(
-        LENGTH,
-        default=None,
-        ge=0,
-        le=LONGEST,
-        zero_is_none=True,
-        example=20,
-        doc="diameter of the bore; no bore if left out",
-    )
-    density: float | None = param(
-        DENSITY, default=None, gt=0, le=1e5, example=7850, doc="density, for the mass"
-    )
-
-    without: ClassVar[str] = "its blank is turned, with a bore and nothing else"
-    """Why it does not have what other blanks have."""
-
-    @property
-    def bore(self) -> float:
-        """Radius of the bore, mm; 0 without one."""
-        return 0.5 * (self.bore_diameter or 0.0)

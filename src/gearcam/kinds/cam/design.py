@@ -56,7 +56,7 @@ from gearcam.results.kind import Kind
 if TYPE_CHECKING:
     from gearcam.kinds.cam.forms.translating import PlateBlank
     from gearcam.kinds.cam.motion import Motion
-    from gearcam.parts.blank import WheelBlank
+    from gearcam.parts.blank import ShaftBlank
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -75,7 +75,7 @@ class CamDesign(Design):
         Speed of the cam.
     load : sequence of LoadSpec or SlideLoadSpec
         What the follower works against.
-    blank : CamBlank, PlateBlank or WheelBlank
+    blank : CamBlank, PlateBlank or ShaftBlank
         Bore, hub, holes, density.
     output : CamOutputSpec
         Files and their tolerance.
@@ -120,7 +120,7 @@ class CamDesign(Design):
     cam: CamSpec
     drive: DriveSpec = field(default_factory=DriveSpec)
     load: tuple[LoadSpec, ...] = ()
-    blank: WheelBlank | PlateBlank = field(default_factory=CamBlank)
+    blank: ShaftBlank | PlateBlank = field(default_factory=CamBlank)
     output: CamOutputSpec = field(default_factory=CamOutputSpec)
     spring: tuple[SpringSpec, ...] = ()
     mass: tuple[MassSpec, ...] = ()

@@ -32,7 +32,6 @@ from gearcam.mechanics.load import LoadSpec, SlideLoadSpec
 from gearcam.mechanics.mass import MassSpec
 from gearcam.mechanics.material import MaterialSpec
 from gearcam.mechanics.spring import SpringSpec
-from gearcam.parts.blank import WheelBlank
 
 __all__ = [
     "AccuracySpec", "BoundsSpec", "CamBlank", "CamDesign", "CamDriveSpec", "CamOutputSpec",
@@ -41,7 +40,7 @@ __all__ = [
     "GravitySpec", "GrooveBlank", "GrooveFollower", "GrooveSpec", "LoadSpec", "MassSpec",
     "MaterialSpec", "MotionFormula", "MotionTable", "PlateBlank", "PlateFollower",
     "PlateOutput", "PlateSpec", "PrecisionSpec", "ReturnPhase", "RisePhase", "SegmentPhase",
-    "SlideDriveSpec", "SlideLoadSpec", "SpringSpec", "WheelBlank", "YokeFollower", "YokeSpec",
+    "SlideDriveSpec", "SlideLoadSpec", "SpringSpec", "YokeFollower", "YokeSpec",
 ]  # fmt: skip
 
 PUBLIC = {name: globals()[name] for name in __all__}

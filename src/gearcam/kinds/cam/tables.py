@@ -22,7 +22,6 @@ from gearcam.base.quantities import (
     Param,
     Quantity,
     allowance,
-    fixed,
     param,
     params_of,
     positive_length,
@@ -30,7 +29,7 @@ from gearcam.base.quantities import (
 from gearcam.base.rules import Breach, needs
 from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, pose_param, studies_param
 from gearcam.dynamics.integrate import METHODS
-from gearcam.parts.blank import OPENING_RULES, WheelBlank, least_metal, widening_rules
+from gearcam.parts.blank import OPENING_RULES, ShaftBlank, widening_rules
 
 NAME: Final = "cam"
 """As in a file."""
@@ -41,13 +40,9 @@ CAM_FORMATS: Final = (*FORMATS, "tool-path", "curvature")
 """What ``output.files`` of a cam may list."""
 
 
-def _direction(*, doc: str) -> Any:
-    return param(ANGLE, default=0.0, ge=-360, le=360, doc=doc)
-
-
 @dataclass(frozen=True, kw_only=True)
-class CamBlank(WheelBlank):
-    """Bore, hub, holes, density of a cam: a `WheelBlank` without what belongs to teeth.
+class CamBlank(ShaftBlank):
+    """Bore, hub, holes, marks and material of a cam.
 
     Parameters
     ----------
@@ -61,23 +56,10 @@ class CamBlank(WheelBlank):
     CamBlank(bore_diameter=16, density=7850)
     """
 
-    keyway_angle: float = _direction(doc="direction of the keyway in the cam's frame")
-    bolt_angle: float = _direction(doc="direction of the first bolt hole in the cam's frame")
-    rim: float | None = least_metal(
-        example=6,
-        doc="least metal between lightening holes and profile; two thirds of the thickness if left "
-        "out",
-    )
     clearance: float = allowance(doc="what is taken off the profile, along its normal")
     clearance_bores: bool = param(
-        TEXT,
-        default=False,
-        doc="whether bore and bolt holes are widened by the clearance too",
+        TEXT, default=False, doc="whether bore and bolt holes are widened by the clearance too"
     )
-    stop_pin: float = fixed(0.0)
-    timing_marks: bool = fixed(False)
-    mark_diameter: float | None = fixed(None)
-    tip_rounding: float = fixed(0.0)
 
     rules = (*OPENING_RULES, *widening_rules("bore_diameter", "bolts"))
 

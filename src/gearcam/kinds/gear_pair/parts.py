@@ -40,6 +40,9 @@ Steps = tuple[tuple[Gear, Gear], ...]
 _PLACES = 65
 """Points on each flank at which it is checked that a cutter can reach them."""
 
+_SLIGHT = 1e-3
+"""Angle of the driver that shows how a wheel moves, rad."""
+
 _CHORDS = 4
 """Least width of a rim in chord tolerances."""
 
@@ -77,10 +80,26 @@ def _part(gears: list[Gear], design: GearPairDesign) -> Part:
     if not lobes.closed and not rack:
         travel = lobes.period if gear.wheel == 1 else lobes.advance
     blank, wheel = design.blank.wheel(gear.wheel), gear.wheel
-    work = Workpiece(name=f"wheel {wheel}", rim=RIM * gear.pair.module, travel=travel, wheel=wheel)
+    work = Workpiece(
+        name=f"wheel {wheel}",
+        rim=RIM * gear.pair.module,
+        travel=travel,
+        wheel=wheel,
+        process=design.output.process or "mill",
+    )
     contours = [one.profile.contour for one in gears]
     marker = None if rack else lambda: _mark(gear, design)
-    return make_part(gear.name, contours, design.pair.face_width, blank, work, marker)
+    width, way = design.pair.face_width, _way(gear)
+    return make_part(gear.name, contours, width, blank, work, marker, way=way)
+
+
+def _way(gear: Gear) -> complex:
+    """Return how a wheel moves (see `gearcam.parts.arrows.arrow`), for a driver that turns."""
+    before, after = (gear.pair.rolling.poses(phi)[gear.wheel - 1] for phi in (0.0, _SLIGHT))
+    if gear.toothing.track.slides:
+        shift = complex(after.shift) - complex(before.shift)
+        return 2.0 * shift / abs(shift)
+    return math.copysign(1.0, float(after.turn) - float(before.turn))
 
 
 def _ring(gears: list[Gear], design: GearPairDesign) -> Part:
@@ -95,7 +114,8 @@ def _ring(gears: list[Gear], design: GearPairDesign) -> Part:
         circle = Circle(center=0j, diameter=2.0 * (roots + rim))
         contours = [circle if around else outside(gear.profile, rim)] * len(gears)
     inner = toothed if gear.hollow else []
-    work = Workpiece(name="wheel 2", rim=RIM * gear.pair.module, wheel=2)
+    process = design.output.process or "mill"
+    work = Workpiece(name="wheel 2", rim=RIM * gear.pair.module, wheel=2, process=process)
     wall = limit_of(PARTS_KIND, "thin-wall", design.limits)
 
     def larger(radius: float) -> dict[str, object]:
@@ -115,6 +135,7 @@ def _ring(gears: list[Gear], design: GearPairDesign) -> Part:
         work,
         lambda: _mark(gear, design, rim, around),
         inner=inner,
+        way=_way(gear),
     )
 
 

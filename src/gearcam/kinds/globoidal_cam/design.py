@@ -25,6 +25,7 @@ from gearcam.mechanics.drive import DriveSpec
 from gearcam.mechanics.gravity import GravitySpec
 from gearcam.mechanics.load import FORCES
 from gearcam.mechanics.material import MaterialSpec
+from gearcam.parts.blank import CylinderBlank
 from gearcam.results.kind import Kind
 from gearcam.spatial.globoidal_spec import (
     GloboidalSpec,
@@ -34,7 +35,6 @@ from gearcam.spatial.globoidal_spec import (
     TurretMassSpec,
     TurretSpec,
 )
-from gearcam.spatial.spec import CylinderBlank
 
 if TYPE_CHECKING:
     from gearcam.designs.kind import Examined

@@ -29,6 +29,7 @@ from gearcam.spatial.globoidal_surface import (
     chord_error,
     core_surface,
     facets,
+    outer_radius,
     rib_surface,
     turret_surface,
 )
@@ -98,7 +99,19 @@ class GloboidalCamResult(GriddedCam):
         """
         program, design = self.program, self.design
         with self.stage("cam"):
-            return make_globoidal(program, design.turret, design.cam, design.blank.bore)
+            return make_globoidal(program, design.turret, design.cam, design.blank.bore_reach)
+
+    @property
+    def core_size(self) -> tuple[float, float, float]:
+        """See `GriddedCam`."""
+        cam = self.cam
+        return cam.distance - cam.floor, -cam.half_length, 2.0 * cam.half_length
+
+    @property
+    def rims(self) -> tuple[float, float]:
+        """Radii of the edges of both faces, mm (see `GriddedCam`)."""
+        radius = outer_radius(self.cam)
+        return radius, radius
 
     @property
     def follower_spec(self) -> TurretSpec:
@@ -120,7 +133,7 @@ class GloboidalCamResult(GriddedCam):
         """Findings of the checks (see `Result.checked_without_hints`)."""
         from gearcam.spatial.globoidal_checks import KIND, SOLID
 
-        return self.findings_of(KIND, SOLID, (self.cam, self.design.blank.bore))
+        return self.findings_of(KIND, SOLID, (self.cam, self.design.blank.bore_reach))
 
     @cached_property
     def flatter(self) -> Changes | None:
@@ -197,7 +210,7 @@ class GloboidalCamResult(GriddedCam):
 
     def solid_of(self, steps: int, places: int) -> Mesh:
         """Return the cam as a mesh (see `GriddedCam.solid_of`)."""
-        cam, bore, around = self.cam, self.design.blank.bore, steps
+        cam, bore, around = self.cam, self.turned_bore, steps
         if self.carved:
             around = ROUND * steps
             uncut = uncut_surface(cam, around)

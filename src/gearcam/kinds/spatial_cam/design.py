@@ -27,9 +27,10 @@ from gearcam.mechanics.load import FORCES, LoadSpec
 from gearcam.mechanics.mass import MassSpec
 from gearcam.mechanics.material import MaterialSpec
 from gearcam.mechanics.spring import SpringSpec
+from gearcam.parts.blank import CylinderBlank
 from gearcam.results.kind import Kind
 from gearcam.spatial.friction import SpaceFrictionSpec
-from gearcam.spatial.spec import CylinderBlank, CylinderSpec, SpatialFollower
+from gearcam.spatial.spec import CylinderSpec, SpatialFollower
 from gearcam.spatial.tool import MillSpec
 
 if TYPE_CHECKING:

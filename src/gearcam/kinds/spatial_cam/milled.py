@@ -76,7 +76,7 @@ def _gcode(result: SpatialCamResult, _: Any) -> dict[str, bytes]:
 def _work(result: SpatialCamResult) -> Iterator[str]:
     """Yield what is made from what, with which tool."""
     path, cam, size = result.rotary, result.cam, result.solved.cam
-    bore, half_angle = result.design.blank.bore, cam.tool.half_angle
+    bore, half_angle = 0.5 * result.design.blank.bore, cam.tool.half_angle
     end, outside = (formatted(2.0 * one) for one in path.tool)
     roller = formatted(2.0 * cam.roller.radius_at(cam.outer_radius))
     cone = f" at the outside of the cam, half angle {formatted(math.degrees(half_angle))} deg"

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from gearcam.kinds.spatial_cam.design import DevelopedSpec, SpatialCamDesign, SpatialOutput
 from gearcam.kinds.spatial_cam.result import SpatialCamResult
+from gearcam.parts.blank import CylinderBlank
 from gearcam.spatial.friction import SpaceFrictionSpec
-from gearcam.spatial.spec import CylinderBlank, CylinderSpec, SpatialFollower
+from gearcam.spatial.spec import CylinderSpec, SpatialFollower
 from gearcam.spatial.tool import MillSpec
 
 __all__ = [

@@ -100,7 +100,7 @@ class SpatialCamResult(GriddedCam):
 
         with self.stage("solve"):
             return least_diameter(
-                program, design.follower, design.cam, design.blank.bore, design.limits
+                program, design.follower, design.cam, design.blank.bore_reach, design.limits
             )
 
     @cached_property
@@ -139,7 +139,8 @@ class SpatialCamResult(GriddedCam):
         """
         program, design = self.program, self.solved
         with self.stage("cam"), self.rows.named():
-            return make_cylinder(program, design.follower, design.cam, design.blank.bore)
+            bore = design.blank.bore_reach
+            return make_cylinder(program, design.follower, design.cam, bore)
 
     @cached_property
     def touches(self) -> tuple[RollerTouch, ...]:
@@ -160,7 +161,22 @@ class SpatialCamResult(GriddedCam):
     @property
     def blank(self) -> Cylinder:
         """What it is made from."""
-        return Cylinder(length=self.design.cam.length, bore=self.design.blank.bore)
+        return Cylinder(length=self.design.cam.length, bore=self.design.blank.bore_reach)
+
+    @property
+    def core_size(self) -> tuple[float, float, float]:
+        """See `GriddedCam`."""
+        return self.cam.floor, 0.0, self.design.cam.length
+
+    @property
+    def rims(self) -> tuple[float, float]:
+        """Radii of the edges of the lower and the upper face, mm (see `GriddedCam`)."""
+        cam = self.cam
+        low, high = (
+            cam.outer_radius if side in cam.sides and not cam.apart else cam.floor
+            for side in (-1, 1)
+        )
+        return low, high
 
     @property
     def lift_unit(self) -> tuple[float, str]:
@@ -185,7 +201,7 @@ class SpatialCamResult(GriddedCam):
         from gearcam.spatial.sizing import flat_diameter
 
         design = self.solved
-        bore, limits = design.blank.bore, design.limits
+        bore, limits = design.blank.bore_reach, design.limits
         size = flat_diameter(self.program, design.follower, design.cam, bore, limits)
         return None if size is None else {"cam.outer_diameter_mm": size}
 
@@ -244,7 +260,7 @@ class SpatialCamResult(GriddedCam):
 
     def solid_of(self, steps: int, places: int) -> Mesh:
         """Return the cam as a mesh (see `GriddedCam.solid_of`)."""
-        cam, blank = self.cam, self.blank
+        cam, blank = self.cam, replace(self.blank, bore=self.turned_bore)
         if not self.carved:
             return surface(cam, blank, steps, places)
         whole = blank_surface(cam, blank, ROUND * steps)
@@ -279,7 +295,9 @@ class SpatialCamResult(GriddedCam):
         coarse, fine = (self.mesh_of(*size).volume for size in _WITNESSES)
         error = (fine - coarse) / 3.0
         with self.stage("bands"):
-            return cam_bands(self.cam, self.blank, STEM, (fine + error, abs(error)))
+            blank = replace(self.blank, bore=self.turned_bore)
+            made = cam_bands(self.cam, blank, STEM, (fine + error, abs(error)))
+            return replace(made, core=self.core)
 
     @cached_property
     def rotary(self) -> RotaryPath:

@@ -183,8 +183,10 @@ class Conjugate(Plates[ConjugateCam, ConjugateSpec, ConjugateFollower]):
         return tuple(
             self.plate(
                 f"cam{wall.key}",
-                wall.contour,
-                blank if blank.hub_front or blank.hub_back else replace(blank, hub_diameter=0.0),
+                wall,
+                blank
+                if blank.hub_front or blank.hub_back
+                else replace(blank, hub_diameter=0.0, set_screw=0.0),
             )
             for wall, blank in zip(cam.walls, blanks, strict=True)
         )

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
+import numpy as np
+
+from gearcam.base.adjustments import Adjustment
 from gearcam.base.facts import Fact
 from gearcam.cams.disc import DiscCam, make_cam
 from gearcam.cams.placing import make_follower
@@ -13,11 +17,12 @@ from gearcam.kinds.cam.forms.base import C, F, Form, S
 from gearcam.kinds.cam.wall_facts import curvature, ends_of, size, start_angle, trimming
 
 if TYPE_CHECKING:
+    from gearcam.cams.wall import Wall
     from gearcam.kinds.cam.forms.base import Parts
     from gearcam.laws.program import Program
     from gearcam.numeric.contour import Contour
-    from gearcam.parts.blank import WheelBlank
-    from gearcam.parts.body import Part
+    from gearcam.parts.blank import ShaftBlank
+    from gearcam.parts.body import Mark, Part
     from gearcam.parts.openings import Workpiece
     from gearcam.pictures.drawings import Drawing
 
@@ -31,11 +36,24 @@ _RIM_PART: Final = 2.0 / 3.0
 """Default rim outside lightening holes, in thicknesses."""
 
 
-def workpiece(name: str, thickness: float, within: str = "the outline") -> Workpiece:
-    """Return the workpiece: `name`, `thickness` in mm, and the edge that openings stay `within`."""
+def workpiece(form: Form[Any, Any, Any], name: str, within: str = "the outline") -> Workpiece:
+    """Return the workpiece of a `form`: its `name`, and the edge that openings stay `within`."""
     from gearcam.parts.openings import Workpiece
 
-    return Workpiece(name=name, rim=_RIM_PART * thickness, within=within)
+    rim, process = _RIM_PART * form.given.thickness, form.output.process or "mill"
+    return Workpiece(name=name, rim=rim, within=within, process=process)
+
+
+def marker(wall: Wall, thickness: float, work: Workpiece) -> Mark:
+    """Return the zero mark of a `wall` of a plate of a `thickness`, mm, made as `work`."""
+    from gearcam.parts.marks import zero_mark
+
+    _, points, normals = wall.places_at(np.zeros(1))
+    if not len(points):
+        what, key = "the profile is trimmed where the motion begins", "blank.zero_mark"
+        remedy = (Adjustment(near={key: False}),)
+        raise work.refusal(what, None, None, "there is no place for a zero mark", remedy, key)
+    return zero_mark(complex(points[0]), -complex(normals[0]), thickness, work.process)
 
 
 class Plates(Form[C, S, F]):
@@ -50,28 +68,29 @@ class Plates(Form[C, S, F]):
             tolerance=self.chord_tolerance,
         )
 
-    def plate(self, name: str, profile: Contour, blank: WheelBlank) -> Part:
+    def plate(self, name: str, wall: Wall, blank: ShaftBlank) -> Part:
         """Return a plate as a part, with bore, hub and holes, its edge moved by the clearance.
 
         Parameters
         ----------
         name : str
             The stem of its files.
-        profile : Contour
-            Its edge before clearance.
-        blank : WheelBlank
+        wall : Wall
+            Its wall.
+        blank : ShaftBlank
             Its blank.
         """
         from gearcam.parts.make import finished, make_part
 
-        thickness = self.given.thickness
-        place = workpiece(name, thickness)
-        return make_part(name, [finished(profile, blank, place)], thickness, blank, place)
+        thickness, work = self.given.thickness, workpiece(self, name)
+        edge = finished(wall.contour, blank, work)
+        mark = partial(marker, wall, thickness, work)
+        return make_part(name, [edge], thickness, blank, work, mark, way=wall.hand)
 
     def parts(self, cam: C) -> tuple[Part, ...]:
         """Return the cam as its only part."""
         (wall,) = cam.walls
-        return (self.plate(STEM, wall.contour, self.blank),)
+        return (self.plate(STEM, wall, self.blank),)
 
     def finished(self, cam: C, parts: Parts) -> tuple[Contour, ...]:  # noqa: ARG002
         """Return the outlines of the parts (see `Form.finished`)."""

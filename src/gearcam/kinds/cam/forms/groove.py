@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from gearcam.base.errors import beyond_limit
 from gearcam.base.facts import Fact
-from gearcam.base.quantities import LENGTH, REQUIRED, TEXT, fixed, param, positive_length
+from gearcam.base.quantities import LENGTH, REQUIRED, TEXT, param, positive_length
 from gearcam.base.rules import Breach, below
 from gearcam.cams.groove import GrooveCam, make_groove
 from gearcam.cams.placing import make_round_follower
@@ -22,10 +23,9 @@ from gearcam.cams.spec import (
 )
 from gearcam.designs.faults import Fault, show
 from gearcam.kinds.cam.forms.base import Form
-from gearcam.kinds.cam.forms.disc import STEM, TOOL_PATH, workpiece
-from gearcam.kinds.cam.tables import CamBlank
+from gearcam.kinds.cam.forms.disc import STEM, TOOL_PATH, marker, workpiece
 from gearcam.kinds.cam.wall_facts import curvature, size, start_angle, trimming
-from gearcam.parts.blank import OPENING_RULES
+from gearcam.parts.blank import ShaftBlank
 
 if TYPE_CHECKING:
     from gearcam.kinds.cam.forms.base import Parts
@@ -89,13 +89,13 @@ class GrooveSpec(CamSpec):
 
 
 @dataclass(frozen=True, kw_only=True)
-class GrooveBlank(CamBlank):
+class GrooveBlank(ShaftBlank):
     """The blank of a groove cam: its bores are as they are given.
 
     Parameters
     ----------
-    clearance, clearance_bores
-        A groove has the clearance of its roller instead.
+    stop_pin, timing_marks, mark_diameter, clearance, clearance_bores, tip_rounding
+        A groove has the clearance of its roller.
 
     Examples
     --------
@@ -104,13 +104,8 @@ class GrooveBlank(CamBlank):
     GrooveBlank(bore_diameter=16)
     """
 
-    clearance: float = fixed(0.0)
-    clearance_bores: bool = fixed(False)
-
     without: ClassVar[str] = "the clearance of a groove is cam.roller_clearance_mm"
     """Why it does not have what other blanks have."""
-
-    rules = OPENING_RULES
 
 
 class Groove(Form[GrooveCam, GrooveSpec, GrooveFollower]):
@@ -160,6 +155,7 @@ class Groove(Form[GrooveCam, GrooveSpec, GrooveFollower]):
         from gearcam.parts.shapes import Circle
 
         thickness, inner, relief = self.given.thickness, cam.inner.contour, cam.relief
+        work = workpiece(self, STEM, within="the groove's inner wall")
         disc = Circle(center=0j, diameter=self.given.outer_diameter)
         within = [relief.contour] if relief is not None and relief.side > 0 else []
         return (
@@ -168,7 +164,9 @@ class Groove(Form[GrooveCam, GrooveSpec, GrooveFollower]):
                 [disc.contour(inner.tolerance)],
                 thickness,
                 self.blank,
-                workpiece(STEM, thickness, within="the groove's inner wall"),
+                work,
+                partial(marker, cam.inner, thickness, work),
+                way=cam.inner.hand,
                 recesses=self._recesses(cam),
                 room=[*within, inner],
             ),

@@ -311,7 +311,7 @@ class Translating(Form[TranslatingCam, PlateSpec, PlateFollower]):
             "bolt_height_mm": self.blank.bolt_height,
         }
         places = {key: size for key, size in sizes.items() if size is not None}
-        stock = Stock(contours=(cam.edge,), work=workpiece(STEM, thickness))
+        stock = Stock(contours=(cam.edge,), work=workpiece(self, STEM))
         demand_apart(taken, stock, places)
         return (
             Part(

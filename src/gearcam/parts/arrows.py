@@ -1,0 +1,159 @@
+"""Arrows in the front face, which show how a part moves: an arc about the axis, or a straight one.
+
+An arrow is a stroke with a head, as wide and deep as its process can make. It lies where it leaves
+its own width to all edges: among the longest that fit the one nearest to the middle of the metal.
+Where none fits it is refused.
+
+Depends on parts' shapes; shapely inside the functions.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from gearcam.base.adjustments import Adjustment
+from gearcam.numeric.arrays import as_pairs
+from gearcam.parts.body import Arrow, Layer, Part
+from gearcam.parts.openings import Workpiece
+from gearcam.parts.shapes import Loop
+
+if TYPE_CHECKING:
+    from shapely import Polygon
+
+STROKES: Final = {
+    "printing": (1.0, 0.6),
+    "laser": (0.5, 0.2),
+    "wire": (0.5, 0.2),
+    "mill": (1.0, 0.3),
+}
+"""Width and largest depth of a stroke by process, mm: two passes of a nozzle of 0.4 mm and two
+layers; a line that is engraved beside the cut; a cutter of 1 mm."""
+
+DEPTH_PART: Final = 0.1
+"""Largest depth of what is engraved, as a share of the width of the part."""
+
+_HEAD: Final = (3.0, 3.5)
+"""Width and length of the head, over the width of the stroke."""
+
+_SWEEPS: Final = np.radians([60.0, 40.0, 25.0])
+_LENGTHS: Final = (0.3, 0.15, 0.08)
+"""Angles of arcs, and lengths of straight arrows over the part's, from the most wanted on."""
+
+_PLACES: Final = 25
+"""Radii, and directions or places, that are tried."""
+
+
+def arrow(part: Part, work: Workpiece, way: complex, core: float) -> Arrow:
+    """Return the arrow of a part.
+
+    Parameters
+    ----------
+    part : Part
+        The part.
+    work : Workpiece
+        With its process.
+    way : complex
+        How it moves: 1 counter-clockwise about its axis, -1 clockwise; for what slides 2 times a
+        unit vector.
+    core : float, mm
+        Radius within which bore and hub lie.
+
+    Returns
+    -------
+    Arrow
+
+    Raises
+    ------
+    InfeasibleError
+        If there is no room.
+    """
+    from shapely import Polygon, prepare, union_all
+
+    stroke, depth = STROKES[work.process]
+    top = Layer(edge=part.steps[-1].edge, low=0.0, high=1.0, openings=part.steps[-1].openings)
+    taken = [Layer(edge=mark.edge, low=0.0, high=1.0) for mark in part.marks]
+    taken += [one for one in part.recesses if one.front]
+    taken += [replace(one, openings=()) for one in part.bosses if one.low > 0.0]
+    whole, *used = (
+        Polygon(edge, holes)
+        for edge, *holes in ([work.points(edge) for edge in one.edges] for one in (top, *taken))
+    )
+    free: Any = whole.difference(union_all(used)).buffer(-stroke, quad_segs=4)
+    prepare(free)
+    shapes = _straight if abs(way) > 1.5 else _arcs
+    for shape in shapes(free, way, stroke, core):
+        if free.contains(Polygon(as_pairs(shape.polyline(0.1 * stroke)))):
+            return Arrow(edge=shape, depth=min(depth, DEPTH_PART * part.width))
+    what = f"there is no room for an arrow with a stroke of {stroke} mm"
+    key = "blank.rotation_arrow"
+    note = "leave it out, or fewer and smaller holes"
+    raise work.refusal(what, None, None, note, (Adjustment(near={key: False}),), key)
+
+
+def _arcs(free: Polygon, way: complex, stroke: float, core: float) -> Iterator[Loop]:
+    """Yield arcs about the axis, the longest first, then those in the middle of the metal."""
+    outer = float(np.abs(free.bounds).max()) if not free.is_empty else 0.0
+    radii = np.linspace(core, outer, _PLACES + 2)[1:-1]
+    radii = radii[np.argsort(np.abs(radii - 0.5 * (core + outer)), kind="stable")]
+    turns = 2.0 * math.pi * np.arange(_PLACES) / _PLACES
+    for sweep in _SWEEPS:
+        for radius in radii.tolist():
+            if radius * sweep < 2.0 * _HEAD[1] * stroke:
+                continue
+            for turn in turns.tolist():  # from the top on
+                yield _arc(radius, 0.5 * math.pi + turn, float(sweep), way.real, stroke)
+
+
+def _arc(radius: float, middle: float, sweep: float, hand: float, stroke: float) -> Loop:
+    """Return an arrow along an arc about the origin, counter-clockwise if `hand` is 1."""
+    half, wide = 0.5 * stroke, 0.5 * _HEAD[0] * stroke
+    head = _HEAD[1] * stroke / radius
+    start, end = -0.5 * sweep, 0.5 * sweep - head
+    bend = math.tan(0.25 * (end - start))
+    outside, inside = radius + half, radius - half
+    polar = [
+        (inside, start, 0.0),
+        (outside, start, bend),
+        (outside, end, 0.0),
+        (radius + wide, end, 0.0),
+        (radius, end + head, 0.0),
+        (radius - wide, end, 0.0),
+        (inside, end, -bend),
+    ]
+    points = np.array([cmath.rect(r, hand * angle) for r, angle, _ in polar])
+    bulges = np.array([hand * one for _, _, one in polar])
+    if hand < 0.0:  # mirrored: the other way round
+        points, bulges = points[::-1], -np.roll(bulges[::-1], -1)
+    return Loop(points=points * cmath.exp(1j * middle), bulges=bulges)
+
+
+def _straight(free: Polygon, way: complex, stroke: float, _: float) -> Iterator[Loop]:
+    """Yield straight arrows, the longest first, then those in the middle of the metal."""
+    if free.is_empty:
+        return
+    low, high = complex(*free.bounds[:2]), complex(*free.bounds[2:])
+    unit, middle = way / abs(way), 0.5 * (low + high)
+    size = high - low
+    along = abs((size * unit.conjugate()).real)
+    steps = np.linspace(-0.5, 0.5, _PLACES)
+    steps = steps[np.argsort(np.abs(steps), kind="stable")].tolist()
+    half, wide = 0.5 * stroke, 0.5 * _HEAD[0] * stroke
+    for share in _LENGTHS:
+        length, head = share * along, _HEAD[1] * stroke
+        if length < 2.0 * head:
+            continue
+        tail, neck, tip = -0.5 * length, 0.5 * length - head, 0.5 * length
+        edge = np.array([
+            complex(tail, -half), complex(neck, -half), complex(neck, -wide), complex(tip, 0.0),
+            complex(neck, wide), complex(neck, half), complex(tail, half),
+        ])  # fmt: skip
+        for x in steps:
+            for y in steps:
+                place = middle + complex(x * size.real, y * size.imag)
+                yield Loop(points=place + unit * edge, bulges=np.zeros(len(edge)))
