@@ -63,6 +63,7 @@ class Toothing(ShortRepr):
     cutter: Cutter
     moved: float = 0.0
     rounding: float = 0.0
+    in_gap: bool = False
 
     @property
     def closed(self) -> bool:
@@ -92,7 +93,7 @@ class Toothing(ShortRepr):
     @property
     def ends(self) -> Array:
         """Arc lengths at which an open wheel's blank ends, mm: half a pitch beyond its teeth."""
-        half = 0.5 * self.pitch
+        half = 0.0 if self.in_gap else 0.5 * self.pitch
         return np.array([-half, self.length + half])
 
     @property

@@ -1,8 +1,9 @@
 """The ends of open wheels: where their teeth stop, and the body that carries them.
 
 The blank ends half a pitch beyond both ends of the centrode: on wheel 1 in the middle of a space,
-on wheel 2 in the middle of a tooth. From there the outline follows the normal to below the roots,
-then runs straight to a hub around the shaft; a ring, whose metal is outside, has an outer arc.
+on wheel 2 in the middle of a tooth; a rack may end half a pitch earlier, in a gap. From there the
+outline follows the normal to below the roots, then runs straight to a hub around the shaft; a ring,
+whose metal is outside, has an outer arc.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from gearcam.base.adjustments import Adjustment
 from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.gears.flank import Curve, Rows, Toothing
 from gearcam.gears.flank_ends import TipEnds
-from gearcam.gears.spec import RingSpec
+from gearcam.gears.spec import Bar, RingSpec
 from gearcam.numeric.arrays import Plane
 from gearcam.numeric.contour import Run
 
@@ -57,7 +58,7 @@ def cut_ends(toothing: Toothing, rows: Rows, tips: TipEnds) -> Rows:
         From half a pitch before the start of the centrode to half a pitch after its end.
     """
     start, end = toothing.track.angle(toothing.ends)
-    if toothing.wheel == 1:
+    if toothing.wheel == 1 or toothing.in_gap:
         first, last = toothing.numbers[0], toothing.numbers[-1]
         outside = ((rows.tooth == first) & (rows.sigma > 0.0)) | (rows.tooth == last)
         kept = rows.select(np.flatnonzero(~outside))
@@ -98,7 +99,7 @@ def _shortened(rows: Rows, start: float, end: float) -> Rows:
 
 
 def body_runs(
-    toothing: Toothing, toothed: Plane, tolerance: float, parts: int, ring: RingSpec
+    toothing: Toothing, toothed: Plane, tolerance: float, parts: int, back: RingSpec | Bar | None
 ) -> tuple[Run, ...]:
     """Return the body outline from the last tooth to the first: around the shaft, or behind a ring.
 
@@ -112,8 +113,8 @@ def body_runs(
         Chord error of the arc.
     parts : int
         Dense points per chord.
-    ring : RingSpec
-        Outside of a ring.
+    back : RingSpec or Bar
+        Outside of a ring, or the bar of a rack.
 
     Returns
     -------
@@ -133,8 +134,9 @@ def body_runs(
     inner = inner if toothing.wheel == 1 else inner[::-1]
     first, last = complex(toothed[0]), complex(toothed[-1])
     if toothing.track.slides:
-        back = toothed.real.max() + depth
-        corners = [complex(back, point.imag) for point in (inner[1], inner[0])]
+        height = back.height if isinstance(back, Bar) else None
+        far = _back(toothed, inner, depth, height)
+        corners = [complex(far, point.imag) for point in (inner[1], inner[0])]
         chain = [last, inner[1], *corners, inner[0], first]
         return tuple(_line(start, end) for start, end in pairwise(chain))
     # counter-clockwise around its metal, the teeth of a ring run clockwise around the shaft
@@ -143,6 +145,7 @@ def body_runs(
     radius, sweep = _HUB * min(abs(toothed).min(), abs(inner).min()), 2.0 * math.pi - span
     if span < 0.0:
         roots, faces = float(abs(toothed).max()), float(abs(inner).max())
+        ring = back if isinstance(back, RingSpec) else RingSpec()
         radius = _outside(ring, roots, faces, toothing.pitch / math.pi)
         sweep = span = -span
     if span >= 2.0 * math.pi - _GAP:
@@ -173,6 +176,24 @@ def body_runs(
         _line(hub[0], inner[0]),
         _line(inner[0], first),
     )
+
+
+def _back(toothed: Plane, inner: Plane, depth: float, height: float | None) -> float:
+    """Return where the back of a rack is, mm along x; of a given height over its tips.
+
+    A height that leaves no metal below the roots is refused.
+    """
+    if height is None:
+        return float(toothed.real.max()) + depth
+    tips = float(toothed.real.min())
+    least = max(float(toothed.real.max()), float(inner.real.max())) - tips
+    if height <= least:
+        what, key = (
+            "the bar of the rack leaves its end faces, a module deep, no metal",
+            "bar.height_mm",
+        )
+        raise beyond_limit(what, key, height, least, near=_MORE * least, unit="mm")
+    return tips + height
 
 
 def _outside(ring: RingSpec, roots: float, faces: float, module: float) -> float:

@@ -31,7 +31,7 @@ from gearcam.gears.flank_ends import (
 from gearcam.gears.open_ends import body_runs, cut_ends
 from gearcam.gears.rounding import round_tips
 from gearcam.gears.spaces import ROWS_PER_TOOTH, entangled, regular_rows, untangle
-from gearcam.gears.spec import RingSpec
+from gearcam.gears.spec import Bar, RingSpec
 from gearcam.laws.ratio.span import angle_text
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane, as_pairs, distinct
 from gearcam.numeric.contour import Contour, Run
@@ -97,8 +97,8 @@ class Outline(ShortRepr):
         Largest chord error.
     oversampling : int
         Dense points per chord.
-    ring : RingSpec, optional
-        Outside of an open ring; by default that of `RingSpec()`.
+    back : RingSpec or Bar, optional
+        Outside of an open ring, by default that of `RingSpec()`; the bar of a rack.
     most : float
         Largest number of chords; more are refused.
     """
@@ -108,7 +108,7 @@ class Outline(ShortRepr):
     flanks: Flanks
     tolerance: float
     oversampling: int
-    ring: RingSpec | None = None
+    back: RingSpec | Bar | None = None
     most: float = MOST
 
     @cached_property
@@ -133,9 +133,7 @@ class Outline(ShortRepr):
         if self.toothing.closed:
             return ()
         parts = self.oversampling
-        return body_runs(
-            self.toothing, self.toothed, self.chord_error, parts, self.ring or RingSpec()
-        )
+        return body_runs(self.toothing, self.toothed, self.chord_error, parts, self.back)
 
     @cached_property
     def points(self) -> Plane:
@@ -225,7 +223,7 @@ def build_outline(
     tolerances: Tolerances,
     *,
     follow: bool = True,
-    ring: RingSpec | None = None,
+    back: RingSpec | Bar | None = None,
 ) -> Outline:
     """Build the outline of a wheel.
 
@@ -243,8 +241,8 @@ def build_outline(
         Inner accuracy.
     follow : bool
         Whether corners are traced into the mate's roots.
-    ring : RingSpec, optional
-        Outside of an open ring; by default that of `RingSpec()`.
+    back : RingSpec or Bar, optional
+        Outside of an open ring, by default that of `RingSpec()`; the bar of a rack.
 
     Returns
     -------
@@ -266,7 +264,7 @@ def build_outline(
         flanks=flanks,
         tolerance=tolerance,
         oversampling=tolerances.oversampling,
-        ring=ring,
+        back=back,
     )
     _demand_simple(outline)
     _demand_shaft(outline)

@@ -28,7 +28,7 @@ from gearcam.gears.rack_limits import (
     settle_rack,
 )
 from gearcam.gears.rolling import Rolling, roll
-from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack, RingSpec, StepsSpec
+from gearcam.gears.spec import Bar, BasicRack, Finish, PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.gears.track import Wheel
 from gearcam.gears.track_table import tabled
 from gearcam.laws.ratio.base import RatioLaw
@@ -306,6 +306,7 @@ def make_pair(
     tolerances: Tolerances,
     finish: tuple[Finish, Finish] = (Finish(), Finish()),
     cutter_teeth: float | None = None,
+    bar: Bar | None = None,
 ) -> GearPair:
     """Return the gear pair of a ratio law: centrodes at size, rack and cutters chosen.
 
@@ -323,6 +324,8 @@ def make_pair(
         Clearance and rounding of both wheels' teeth.
     cutter_teeth : float, optional
         Number of teeth of the pinion cutter of a ring.
+    bar : Bar, optional
+        What a rack is made from.
 
     Returns
     -------
@@ -377,6 +380,7 @@ def make_pair(
             teeth=spec.teeth[wheel - 1],
             cutter=cutter,
             rounding=finish[wheel - 1].tip_rounding,
+            in_gap=track.slides and bar is not None and bar.in_gap,
         )
 
     second = toothing(2, rack)
@@ -396,7 +400,7 @@ def make_gear(
     wheel: Wheel,
     tolerance: float,
     tolerances: Tolerances,
-    ring: RingSpec | None = None,
+    back: RingSpec | Bar | None = None,
 ) -> Gear:
     """Return one wheel of a pair with its outline.
 
@@ -410,8 +414,8 @@ def make_gear(
         Chord tolerance.
     tolerances : Tolerances
         Inner accuracy.
-    ring : RingSpec, optional
-        Outside of an open ring; by default that of `RingSpec()`.
+    back : RingSpec or Bar, optional
+        Outside of an open ring, by default that of `RingSpec()`; the bar of a rack.
 
     Returns
     -------
@@ -423,7 +427,7 @@ def make_gear(
         If the wheel would not be in one piece.
     """
     mate = pair.toothings[2 - wheel]
-    profile = build_outline(pair.toothings[wheel - 1], mate, tolerance, tolerances, ring=ring)
+    profile = build_outline(pair.toothings[wheel - 1], mate, tolerance, tolerances, back=back)
     return Gear(pair=pair, wheel=wheel, profile=profile)
 
 

@@ -250,6 +250,22 @@ class RingSpec:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Bar:
+    """What a rack is made from.
+
+    Parameters
+    ----------
+    height : float or None, mm
+        From its back to the highest tip; None: a module below the roots.
+    in_gap : bool
+        Whether it ends in the middle of a gap, after whole teeth, instead of half a pitch beyond.
+    """
+
+    height: float | None = None
+    in_gap: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
 class Finish:
     """Clearance and rounding of the toothed edge of a wheel.
 

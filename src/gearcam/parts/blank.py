@@ -36,6 +36,7 @@ from gearcam.base.quantities import (
     positive_length,
 )
 from gearcam.base.rules import Breach, Rule, below, excludes, needs, only_with
+from gearcam.gears.spec import Bar
 
 KIND: Final = "parts"
 """The checks of parts."""
@@ -318,6 +319,70 @@ class WheelBlank(ShaftBlank):
         *widening_rules("bore_diameter", "bolts", "stop_pin"),
         only_with(("mark_diameter",), "timing_marks", True),
     )
+
+
+@dataclass(frozen=True, kw_only=True)
+class RowBlank(ShortRepr):
+    """A row of mounting holes in what slides."""
+
+    bolts: int = _count(doc="number of mounting holes in a row", le=100)
+    bolt_diameter: float = _length(doc="diameter of each mounting hole")
+    bolt_spacing: float | None = positive_length(
+        example=60, doc="distance of the holes in the row, centred on the length"
+    )
+    bolt_height: float | None = positive_length(
+        example=10, doc="from the back, the edge opposite to the profile, to the row of holes"
+    )
+
+    rules = (
+        needs("bolts", "bolt_diameter", "bolt_height"),
+        *(needs(f"bolt_{size}", "bolts") for size in ("diameter", "height", "spacing")),
+    )
+
+    @property
+    def places(self) -> dict[str, float]:
+        """Keys that place the row, with their values, mm."""
+        sizes = {"bolt_spacing_mm": self.bolt_spacing, "bolt_height_mm": self.bolt_height}
+        return {key: size for key, size in sizes.items() if size is not None}
+
+    def problems(self) -> Iterator[Breach]:
+        """Yield contradictions: field, index, message, what is allowed."""
+        if self.bolts > 1 and self.bolt_spacing is None:
+            yield "bolt_spacing", None, "is missing beside bolts", "bolts with bolt_spacing_mm"
+        if self.bolts == 1 and self.bolt_spacing is not None:
+            message, rule = "a single bolt has no distance to another", "2 bolts or more"
+            yield "bolt_spacing", None, message, rule
+
+
+@dataclass(frozen=True, kw_only=True)
+class BarSpec(RowBlank):
+    """What a rack is made from: its height, its ends, a row of mounting holes.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.BarSpec(height=20.0, ends="gap", bolts=1, bolt_diameter=5.0, bolt_height=6.0)
+    BarSpec(bolts=1, bolt_diameter=5, bolt_height=6, height=20, ends='gap')
+    """
+
+    height: float | None = positive_length(
+        example=20,
+        doc="height of a rack from its back to the highest tip; if left out the back "
+        "is a module below the roots",
+    )
+    ends: str = param(
+        TEXT,
+        default="tooth",
+        choices=("tooth", "gap"),
+        doc="where a rack ends: in the middle of a tooth, half a pitch beyond its travel, or in "
+        "the middle of a gap, after whole teeth; its end face then meets the line of centres at "
+        "phi1 = 0, as a timing mark would",
+    )
+
+    @property
+    def bar(self) -> Bar:
+        """The sizes of the bar."""
+        return Bar(height=self.height, in_gap=self.ends == "gap")
 
 
 def _both(name: str, hint: Any, default: Any) -> tuple[str, Any, Any]:

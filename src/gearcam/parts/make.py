@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from typing import Any
 
 from gearcam.base.adjustments import Adjustment
 from gearcam.base.numerals import formatted
@@ -81,8 +82,6 @@ def make_part(
     if blank.hub_diameter:
         hub = Hub(diameter=blank.hub_diameter, front=blank.hub_front, back=blank.hub_back)
         _demand_within(hub, room or contours, work)
-    marked = blank.timing_marks or blank.zero_mark
-    marks = (marker(),) if marker is not None and marked else ()
     screw = None
     if hub is not None and blank.set_screw:
         screw = _screw(blank, hub, found, width, work)
@@ -93,15 +92,49 @@ def make_part(
         openings=found,
         inner=tuple(inner),
         hub=hub,
-        marks=marks,
         recesses=recesses,
         screw=screw,
     )
-    _demand_marks(part, blank, work)
+    return marked(part, blank, work, marker, way=way)
+
+
+def marked(
+    part: Part,
+    blank: Any,
+    work: Workpiece,
+    marker: Callable[[], Mark] | None = None,
+    *,
+    way: complex = 1.0,
+) -> Part:
+    """Return a part with its mark, its arrow and its chamfers.
+
+    Parameters
+    ----------
+    part : Part
+        The part without them.
+    blank : ShaftBlank or another
+        With what is wanted of them.
+    work : Workpiece
+        What it is made from.
+    marker : callable, optional
+        As of `make_part`.
+    way : complex
+        As of `make_part`.
+
+    Raises
+    ------
+    InfeasibleError
+        If one of them has no space.
+    """
+    if marker is not None and (blank.zero_mark or blank.timing_marks):
+        part = replace(part, marks=(marker(),))
+        _demand_marks(part, blank, work)
     if blank.rotation_arrow:
         from gearcam.parts.arrows import arrow
 
-        part = replace(part, arrow=arrow(part, work, way, blank.core_reach))
+        core = [one.shape.reach for one in part.openings if one.kind == "BORE"]
+        core += [boss.edge.reach for boss in part.bosses]
+        part = replace(part, arrow=arrow(part, work, way, max(core, default=0.0)))
     return replace(part, bevels=tuple(bevels(part, blank.chamfer, work)))
 
 
@@ -234,30 +267,30 @@ def _demand_within(hub: Hub, contours: Sequence[Contour | Circle], work: Workpie
         raise work.refusal(what, hub.diameter, room, "at the limit they touch", smaller, place)
 
 
-def _demand_marks(part: Part, blank: ShaftBlank, work: Workpiece) -> None:
+def _demand_marks(part: Part, blank: Any, work: Workpiece) -> None:
     """Refuse a mark that meets an opening, the hub or the outline."""
-    if not part.marks:
-        return
+    key = "timing_marks" if blank.timing_marks else "zero_mark"
     outline, *holes = (edge.polyline(part.tolerance) for edge in part.steps[0].edges)
     for mark in part.marks:
         radius, room = 0.5 * mark.diameter, room_around(mark.center, [outline], holes)
         if part.hub is not None:
             room = min(room, abs(mark.center) - 0.5 * part.hub.diameter)
         if room < radius:
-            what = "the timing mark meets an opening, the hub or the outline"
+            what = f"the {key.partition('_')[0]} mark meets an opening, the hub or the outline"
             note = "the limit is the free space around its centre"
+            smaller = {"blank.mark_diameter_mm": 1.9 * room} if blank.timing_marks else {}
             adjustments = (
                 Adjustment(near=_between_bolts(blank, work)),
-                Adjustment(near={"blank.mark_diameter_mm": 1.9 * room} if room > 0.0 else {}),
-                Adjustment(near={"blank.timing_marks": False}),
+                Adjustment(near=smaller if room > 0.0 else {}),
+                Adjustment(near={f"blank.{key}": False}),
             )
             limit = max(0.0, 2.0 * room)
             raise work.refusal(what, mark.diameter, limit, note, adjustments)
 
 
-def _between_bolts(blank: ShaftBlank, work: Workpiece) -> dict[str, object]:
+def _between_bolts(blank: Any, work: Workpiece) -> dict[str, object]:
     """Return the remedy that turns a bolt circle by half a step, if there are bolts."""
-    if not blank.bolts:
+    if not getattr(blank, "bolt_circle", 0.0):
         return {}
     angle = math.degrees(blank.bolt_angle) + 180.0 / blank.bolts
     return {work.key("bolt_angle_deg"): angle if angle <= 360.0 else angle - 360.0}

@@ -29,7 +29,7 @@ from gearcam.base.quantities import params_of
 from gearcam.numeric.arrays import Array, Plane, as_pairs
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.polygons import room_around
-from gearcam.parts.blank import ShaftBlank, serving
+from gearcam.parts.blank import RowBlank, ShaftBlank, serving
 from gearcam.parts.body import Edge, Opening
 from gearcam.parts.shapes import Circle, Loop
 
@@ -86,6 +86,8 @@ class Workpiece:
         Name of the boundary of its openings.
     process : str
         How it is made, which decides how wide and deep its marks are.
+    bar : bool
+        Whether it is a rack, whose holes are those of its bar.
     """
 
     name: str
@@ -94,6 +96,7 @@ class Workpiece:
     wheel: int | None = None
     within: str = "the outline"
     process: str = "mill"
+    bar: bool = False
 
     def points(self, edge: Edge) -> Array:
         """Return points of an `edge`, (n, 2), mm, for tests of overlap."""
@@ -105,7 +108,9 @@ class Workpiece:
         return _FINE * self.rim
 
     def key(self, name: str) -> str:
-        """Return the dotted key of its value of key `name` in ``[blank]``."""
+        """Return the dotted key of its value of key `name` in ``[blank]``, or of its bar."""
+        if self.bar and name.startswith("bolt"):
+            return f"bar.{name}"
         return f"blank.{name}" if self.wheel is None else f"blank.{name}[{self.wheel - 1}]"
 
     def without(self, blank: ShaftBlank, name: str) -> dict[str, object]:
@@ -121,10 +126,10 @@ class Workpiece:
         limit: float | None,
         note: str,
         adjustments: Sequence[Adjustment],
-        place: str = "[blank]",
+        place: str = "",
     ) -> InfeasibleError:
         """Return the refusal of a value, mm, beyond its limit (see `beyond_limit`)."""
-        where = f"{self.name}, {place}"
+        where = f"{self.name}, {place or ('[bar]' if self.bar else '[blank]')}"
         return beyond_limit(what, where, value, limit, note, adjustments=adjustments, unit="mm")
 
 
@@ -217,6 +222,25 @@ def _bolts(blank: ShaftBlank) -> Iterator[Opening]:
         angle = blank.bolt_angle + 2.0 * math.pi * number / blank.bolts
         center = cmath.rect(0.5 * blank.bolt_circle, angle)
         shape = Circle(center=center, diameter=blank.bolt_diameter)
+        yield Opening(kind="HOLE", shape=shape, name=f"bolt hole {number + 1}")
+
+
+def row_of_holes(row: RowBlank, foot: complex, along: complex, up: complex) -> Iterator[Opening]:
+    """Yield the mounting holes of what slides.
+
+    Parameters
+    ----------
+    row : RowBlank
+        Their sizes.
+    foot : complex, mm
+        The middle of the back, from which the height of the row counts.
+    along, up : complex
+        Directions of the row, and from the back to it: unit vectors.
+    """
+    for number in range(row.bolts):
+        aside = (number - 0.5 * (row.bolts - 1)) * (row.bolt_spacing or 0.0)
+        center = foot + aside * along + (row.bolt_height or 0.0) * up
+        shape = Circle(center=center, diameter=row.bolt_diameter)
         yield Opening(kind="HOLE", shape=shape, name=f"bolt hole {number + 1}")
 
 

@@ -17,7 +17,7 @@ from gearcam.designs.nodes import Choice
 from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, pose_param, studies_param
 from gearcam.designs.table import table_of
 from gearcam.dynamics.settings import DYNAMICS, VIBRATION, PairDynamicsSpec
-from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
+from gearcam.gears.spec import Bar, PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.gears.subject import KIND as TEETH
 from gearcam.kinds.gear_pair.load_settings import StressSpec
 from gearcam.kinds.shared import AccuracySpec, ForcesSpec, GoalSpec
@@ -38,7 +38,7 @@ from gearcam.meshing.settings import (
 )
 from gearcam.meshing.settings import KIND as MESHING
 from gearcam.parts.blank import KIND as PARTS
-from gearcam.parts.blank import Blank, serving
+from gearcam.parts.blank import BarSpec, Blank, serving
 from gearcam.results.kind import Kind
 
 NAME: Final = "gear-pair"
@@ -98,6 +98,8 @@ class GearPairDesign(Design):
         Bores, hubs, holes, marks, edges, density.
     ring : RingSpec
         The metal around the teeth of a ring, and its cutter.
+    bar : BarSpec
+        What a rack is made from: height, ends, mounting holes.
     steps : StepsSpec
         Steps of stepped wheels.
     output : PairOutputSpec
@@ -141,6 +143,7 @@ class GearPairDesign(Design):
     rack: Rack = field(default_factory=Rack)
     blank: Blank = field(default_factory=Blank)
     ring: RingSpec = field(default_factory=RingSpec)
+    bar: BarSpec = field(default_factory=BarSpec)
     steps: StepsSpec = field(default_factory=StepsSpec)
     output: PairOutputSpec = field(default_factory=PairOutputSpec)
     meshing: MeshingSpec = field(default_factory=MeshingSpec)
@@ -154,6 +157,11 @@ class GearPairDesign(Design):
     dynamics: PairDynamicsSpec = field(default_factory=PairDynamicsSpec)
     accuracy: AccuracySpec = field(default_factory=AccuracySpec)
     goal: GoalSpec = field(default_factory=GoalSpec)
+
+    @property
+    def back(self) -> RingSpec | Bar:
+        """What is behind the teeth of an open ring or a rack."""
+        return self.bar.bar if self.law_type == "rack" else self.ring
 
     @property
     def law_type(self) -> str:
@@ -199,6 +207,11 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     if on_rack and radii and radii[0] != radii[1]:
         message = "wheel 2 is a rack and has no journal"
         yield Fault(("friction", "journal_radius_mm"), message, allowed="one radius")
+    bar = document.get("bar")
+    if not on_rack and isinstance(law, Mapping) and isinstance(bar, Mapping):
+        for key, value in bar.items():
+            message, rule = "is for a rack, and both elements are wheels", 'law.type = "rack"'
+            yield Fault(("bar", key), message, value, rule)
     if on_rack:
         yield from _unmade(blank, _OF_HOLES, "is a rack and has no openings and no hub")
     elif isinstance(pair, Mapping) and pair.get("type") == "internal":

@@ -101,6 +101,7 @@ class MadePair(PartsResult):
                 self.tolerances,
                 self._finish,
                 self.design.ring.cutter_teeth,
+                self.design.bar.bar,
             )
 
     @property
@@ -162,7 +163,7 @@ class MadePair(PartsResult):
 
     def _made(self, wheel: Wheel, pair: GearPair, tolerance: float) -> Gear:
         """Return a wheel as it would be without bore and rim, at a chord `tolerance`, mm."""
-        return make_gear(pair, wheel, tolerance, self.tolerances, self.design.ring)
+        return make_gear(pair, wheel, tolerance, self.tolerances, self.design.back)
 
     @property
     def gears(self) -> tuple[Gear, Gear]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -17,17 +18,18 @@ from gearcam.gears.outline import outside
 from gearcam.gears.pair import Gear, make_gear
 from gearcam.gears.spec import RIM
 from gearcam.kinds.gear_pair.design import GearPairDesign
-from gearcam.numeric.arrays import as_complex
+from gearcam.numeric.arrays import as_complex, bounds
 from gearcam.numeric.columns import Columns
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.moments import curve_moments
+from gearcam.parts.arrows import DEPTH_PART
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.body import Mark, Part
 from gearcam.parts.checks import CheckedParts
-from gearcam.parts.make import make_part
-from gearcam.parts.marks import timing_mark
+from gearcam.parts.make import make_part, marked
+from gearcam.parts.marks import MARK_DEPTH, MARK_DIAMETER, MARK_GAP, timing_mark
 from gearcam.parts.mass import quadrature_error
-from gearcam.parts.openings import Stock, Workpiece
+from gearcam.parts.openings import Stock, Workpiece, demand_apart, row_of_holes
 from gearcam.parts.rim import demand_bolts, is_around
 from gearcam.parts.shapes import Circle
 
@@ -88,9 +90,32 @@ def _part(gears: list[Gear], design: GearPairDesign) -> Part:
         process=design.output.process or "mill",
     )
     contours = [one.profile.contour for one in gears]
-    marker = None if rack else lambda: _mark(gear, design)
     width, way = design.pair.face_width, _way(gear)
-    return make_part(gear.name, contours, width, blank, work, marker, way=way)
+    if rack:
+        return _rack(gear, contours, design, replace(work, bar=True), way)
+    return make_part(gear.name, contours, width, blank, work, lambda: _mark(gear, design), way=way)
+
+
+def _rack(
+    gear: Gear, contours: list[Contour], design: GearPairDesign, work: Workpiece, way: complex
+) -> Part:
+    """Return the part of a rack, which moves in a direction (see `_way`)."""
+    points, blank, width = contours[0].points, design.blank.wheel(2), design.pair.face_width
+    low, high = bounds(points)
+    foot, up = complex(high.real, 0.5 * (low.imag + high.imag)), -1.0
+    holes = tuple(row_of_holes(design.bar, foot, 0.5 * way, up))
+    demand_apart(holes, Stock(contours=contours, work=work), design.bar.places)
+    part = Part(name=gear.name, contours=tuple(contours), width=width, openings=holes, turns=False)
+
+    def mark() -> Mark:
+        frames, module = gear.toothing.frames(np.zeros(1)), gear.pair.module
+        size = blank.mark_diameter or MARK_DIAMETER * module
+        deep = gear.toothing.cutter.dedendum + MARK_GAP * module + 0.5 * size
+        center = complex(frames.p[0] - deep * gear.toothing.turn * frames.t[0])
+        return Mark(center=center, diameter=size, depth=min(MARK_DEPTH, DEPTH_PART * width))
+
+    # a rack that ends in a gap begins at the pitch point of phi1 = 0: its end face is the mark
+    return marked(part, blank, work, None if gear.toothing.in_gap else mark, way=way)
 
 
 def _way(gear: Gear) -> complex:
@@ -317,7 +342,7 @@ def _volume(
         area = outline.kinks_missed + flank * outline.contour.length
         if outline.flanks.traced:
             tolerance = outline.tolerance / _FINER
-            finer = make_gear(gear.pair, gear.wheel, tolerance, within, design.ring)
+            finer = make_gear(gear.pair, gear.wheel, tolerance, within, design.back)
             area += _TRACED * abs(_toothed(finer) - _toothed(gear))
         off += height * area
     return off

@@ -12,12 +12,13 @@ from gearcam.mechanics.friction import WheelFrictionSpec
 from gearcam.mechanics.material import MaterialSpec
 from gearcam.mechanics.wheel_load import WheelLoadSpec
 from gearcam.meshing.settings import ErrorsSpec, MeshingSpec
-from gearcam.parts.blank import Blank
+from gearcam.parts.blank import BarSpec, Blank, WheelBlank
 
 __all__ = [
-    "AccuracySpec", "Blank", "DriveSpec", "ErrorsSpec", "ForcesSpec", "GearPairDesign",
+    "AccuracySpec", "BarSpec", "Blank", "DriveSpec", "ErrorsSpec", "ForcesSpec", "GearPairDesign",
     "GearPairResult", "GoalSpec", "MaterialSpec", "MeshingSpec", "PairOutputSpec", "PairSpec",
-    "Rack", "RingSpec", "StepsSpec", "StressSpec", "WheelFrictionSpec", "WheelLoadSpec",
+    "Rack", "RingSpec", "StepsSpec", "StressSpec", "WheelBlank", "WheelFrictionSpec",
+    "WheelLoadSpec",
 ]  # fmt: skip
 
 PUBLIC = {name: globals()[name] for name in __all__}

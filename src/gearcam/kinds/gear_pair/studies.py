@@ -326,10 +326,10 @@ def _flank(result: GearPairResult) -> Ladder:
 
 
 def _outline(result: GearPairResult) -> Ladder:
-    pair, ring, inner = result.pair, result.design.ring, result.tolerances
+    pair, back, inner = result.pair, result.design.back, result.tolerances
 
     def samplers(tolerance: float) -> list[Sampler]:
-        gears = [make_gear(pair, wheel, tolerance, inner, ring) for wheel in WHEELS]
+        gears = [make_gear(pair, wheel, tolerance, inner, back) for wheel in WHEELS]
         for gear in gears:
             _ = gear.outline  # computed on demand
         return [gear.profile.sampler for gear in gears]

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar, Final, cast
 
 import numpy as np
 
-from gearcam.base.display import ShortRepr
 from gearcam.base.errors import beyond_limit
 from gearcam.base.facts import Fact
 from gearcam.base.quantities import (
@@ -21,7 +21,7 @@ from gearcam.base.quantities import (
     params_of,
     positive_length,
 )
-from gearcam.base.rules import Breach, below, needs, only_with
+from gearcam.base.rules import below, needs, only_with
 from gearcam.cams.placing import make_follower_over_plate
 from gearcam.cams.spec import (
     GROOVE_SIDE,
@@ -33,7 +33,7 @@ from gearcam.cams.spec import (
 from gearcam.cams.translating import TranslatingCam, make_translating
 from gearcam.designs.faults import Fault, show
 from gearcam.kinds.cam.forms.base import Form
-from gearcam.kinds.cam.forms.disc import STEM, TOOL_PATH, workpiece
+from gearcam.kinds.cam.forms.disc import STEM, TOOL_PATH, marker, workpiece
 from gearcam.kinds.cam.forms.groove import milled_faults
 from gearcam.kinds.cam.tables import CamBlank, CamOutputSpec
 from gearcam.kinds.cam.wall_facts import curvature, start_angle, trimming
@@ -42,13 +42,14 @@ from gearcam.laws.program import Program, make_program
 from gearcam.mechanics.drive import SlideDriveSpec
 from gearcam.mechanics.load import SlideLoadSpec
 from gearcam.numeric.pose import Pose
+from gearcam.parts.blank import RowBlank
 
 if TYPE_CHECKING:
     from gearcam.base.tolerances import Tolerances
     from gearcam.cams.translating import TranslatingWall
     from gearcam.kinds.cam.forms.base import Parts
     from gearcam.numeric.contour import Contour
-    from gearcam.parts.body import Opening, Part
+    from gearcam.parts.body import Part
     from gearcam.pictures.drawings import Drawing, Path, Shape
 
 _ROUNDING = 1e-9
@@ -124,10 +125,15 @@ class PlateSpec(CamSpec):
 
 
 @dataclass(frozen=True, kw_only=True)
-class PlateBlank(ShortRepr):
-    """The blank of a translating cam: a plate with a row of bolts.
+class PlateBlank(RowBlank):
+    """The blank of a translating cam: a plate with a row of mounting holes.
 
-    Its `bolts`, `bolt_diameter`, `density` and `clearance` are those of a `CamBlank`.
+    Its `density`, `clearance`, `chamfer` and marks are those of a `CamBlank`.
+
+    Parameters
+    ----------
+    timing_marks : bool
+        They belong to teeth.
 
     Examples
     --------
@@ -145,37 +151,15 @@ class PlateBlank(ShortRepr):
         example=150,
         doc="length of a translating cam's plate; as long as its profile needs if left out",
     )
-    bolts: int = _of_wheels("bolts")
-    bolt_diameter: float = _of_wheels("bolt_diameter")
-    bolt_spacing: float | None = positive_length(
-        example=60,
-        doc="distance of the bolts in the row of a translating cam, centred on the plate",
-    )
-    bolt_height: float | None = positive_length(
-        example=10, doc="from the lower edge of a translating cam's plate to the row of bolts"
-    )
     density: float | None = _of_wheels("density")
     clearance: float = _of_wheels("clearance")
+    chamfer: float = _of_wheels("chamfer")
+    rotation_arrow: bool = _of_wheels("rotation_arrow")
+    zero_mark: bool = _of_wheels("zero_mark")
 
-    without: ClassVar[str] = "it slides, and has no other openings than a row of bolts"
+    timing_marks: bool = fixed(False)
+    without: ClassVar[str] = "it slides, and has no other openings than a row of holes"
     """Why it does not have what other blanks have."""
-
-    rules = (
-        needs("bolts", "bolt_diameter", "bolt_height"),
-        *(needs(f"bolt_{size}", "bolts") for size in ("diameter", "height", "spacing")),
-    )
-
-    def problems(self) -> Iterator[Breach]:
-        """Yield contradictions: field, index, message, what is allowed."""
-        if self.bolts > 1 and self.bolt_spacing is None:
-            yield "bolt_spacing", None, "is missing beside bolts", "bolts with bolt_spacing_mm"
-        if self.bolts == 1 and self.bolt_spacing is not None:
-            yield (
-                "bolt_spacing",
-                None,
-                "a single bolt has no distance to another",
-                "2 bolts or more",
-            )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -288,10 +272,12 @@ class Translating(Form[TranslatingCam, PlateSpec, PlateFollower]):
     def parts(self, cam: TranslatingCam) -> tuple[Part, ...]:
         """Return the plate, with its wall or its groove, and its bolts."""
         from gearcam.parts.body import Opening, Part, Recess
-        from gearcam.parts.openings import Stock, demand_apart
+        from gearcam.parts.make import marked
+        from gearcam.parts.openings import Stock, demand_apart, row_of_holes
 
         cam, thickness, depth = self._cut(cam), self.given.thickness, self.given.groove_depth
-        holes, recesses = list(self._bolts(cam)), []
+        foot = complex(0.5 * (cam.plate.left + cam.plate.right), cam.plate.low)
+        holes, recesses = list(row_of_holes(self.blank, foot, 1.0, 1j)), []
         taken = holes
         if cam.groove is not None:
             slot = Opening(kind="GROOVE", shape=cam.groove, name="groove")
@@ -306,35 +292,18 @@ class Translating(Form[TranslatingCam, PlateSpec, PlateFollower]):
                     edge=cam.groove, low=low, high=high, front=front, width=cam.width, place=place
                 )
                 recesses = [recess]
-        sizes = {
-            "bolt_spacing_mm": self.blank.bolt_spacing,
-            "bolt_height_mm": self.blank.bolt_height,
-        }
-        places = {key: size for key, size in sizes.items() if size is not None}
-        stock = Stock(contours=(cam.edge,), work=workpiece(self, STEM))
-        demand_apart(taken, stock, places)
-        return (
-            Part(
-                name=STEM,
-                contours=(cam.edge,),
-                width=thickness,
-                openings=tuple(holes),
-                recesses=tuple(recesses),
-                turns=False,
-            ),
+        work = workpiece(self, STEM)
+        demand_apart(taken, Stock(contours=(cam.edge,), work=work), self.blank.places)
+        part = Part(
+            name=STEM,
+            contours=(cam.edge,),
+            width=thickness,
+            openings=tuple(holes),
+            recesses=tuple(recesses),
+            turns=False,
         )
-
-    def _bolts(self, cam: TranslatingCam) -> Iterator[Opening]:
-        """Yield the bolt holes, a row centred on the length of the plate."""
-        from gearcam.parts.body import Opening
-        from gearcam.parts.shapes import Circle
-
-        blank, plate = self.blank, cam.plate
-        middle, low = 0.5 * (plate.left + plate.right), plate.low + (blank.bolt_height or 0.0)
-        for number in range(blank.bolts):
-            aside = (number - 0.5 * (blank.bolts - 1)) * (blank.bolt_spacing or 0.0)
-            shape = Circle(center=complex(middle + aside, low), diameter=blank.bolt_diameter)
-            yield Opening(kind="HOLE", shape=shape, name=f"bolt hole {number + 1}")
+        mark = partial(marker, cam.lower, thickness, work)
+        return (marked(part, self.blank, work, mark, way=2.0),)
 
     def _cut(self, cam: TranslatingCam) -> TranslatingCam:
         """Return the finished cam: a single wall is moved back by the clearance of the blank."""
