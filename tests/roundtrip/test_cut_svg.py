@@ -292,7 +292,7 @@ def test_letters_read_as_they_should() -> None:
 
 
 def test_what_has_no_outline_is_not_cut() -> None:
-    mark = Feature(layer="MARK", shape=part().marks[0].circle)
+    mark = Feature(layer="MARK", shape=part().marks[0].edge)
     with pytest.raises(ValueError, match="nothing to cut"):
         cut_svg([Drawing(name="gear1", features=(mark,))], "none")
 

@@ -55,6 +55,8 @@ class Toothing(ShortRepr):
         Offset of its teeth along its centrode.
     rounding : float, mm
         Radius of its rounded tip edges.
+    in_gap : bool
+        Whether the blank of a rack ends in gaps, not half a pitch beyond its teeth.
     """
 
     track: Track

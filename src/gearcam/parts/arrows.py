@@ -1,6 +1,6 @@
 """Arrows in the front face, which show how a part moves: an arc about the axis, or a straight one.
 
-An arrow is a stroke with a head, as wide and deep as its process can make. It lies where it leaves
+An arrow is a line with a head, as wide and deep as its process can make. It lies where it leaves
 its own width to all edges: among the longest that fit the one nearest to the middle of the metal.
 Where none fits it is refused.
 
@@ -26,20 +26,20 @@ from gearcam.parts.shapes import Loop
 if TYPE_CHECKING:
     from shapely import Polygon
 
-STROKES: Final = {
+LINES: Final = {
     "printing": (1.0, 0.6),
     "laser": (0.5, 0.2),
     "wire": (0.5, 0.2),
     "mill": (1.0, 0.3),
 }
-"""Width and largest depth of a stroke by process, mm: two passes of a nozzle of 0.4 mm and two
+"""Width and largest depth of a line by process, mm: two passes of a nozzle of 0.4 mm and two
 layers; a line that is engraved beside the cut; a cutter of 1 mm."""
 
 DEPTH_PART: Final = 0.1
 """Largest depth of what is engraved, as a share of the width of the part."""
 
 _HEAD: Final = (3.0, 3.5)
-"""Width and length of the head, over the width of the stroke."""
+"""Width and length of the head, over the width of the line."""
 
 _SWEEPS: Final = np.radians([60.0, 40.0, 25.0])
 _LENGTHS: Final = (0.3, 0.15, 0.08)
@@ -75,7 +75,7 @@ def arrow(part: Part, work: Workpiece, way: complex, core: float) -> Arrow:
     """
     from shapely import Polygon, prepare, union_all
 
-    stroke, depth = STROKES[work.process]
+    line, depth = LINES[work.process]
     top = Layer(edge=part.steps[-1].edge, low=0.0, high=1.0, openings=part.steps[-1].openings)
     taken = [Layer(edge=mark.edge, low=0.0, high=1.0) for mark in part.marks]
     taken += [one for one in part.recesses if one.front]
@@ -84,19 +84,19 @@ def arrow(part: Part, work: Workpiece, way: complex, core: float) -> Arrow:
         Polygon(edge, holes)
         for edge, *holes in ([work.points(edge) for edge in one.edges] for one in (top, *taken))
     )
-    free: Any = whole.difference(union_all(used)).buffer(-stroke, quad_segs=4)
+    free: Any = whole.difference(union_all(used)).buffer(-line, quad_segs=4)
     prepare(free)
     shapes = _straight if abs(way) > 1.5 else _arcs
-    for shape in shapes(free, way, stroke, core):
-        if free.contains(Polygon(as_pairs(shape.polyline(0.1 * stroke)))):
+    for shape in shapes(free, way, line, core):
+        if free.contains(Polygon(as_pairs(shape.polyline(0.1 * line)))):
             return Arrow(edge=shape, depth=min(depth, DEPTH_PART * part.width))
-    what = f"there is no room for an arrow with a stroke of {stroke} mm"
+    what = f"there is no room for an arrow with a line of {line} mm"
     key = "blank.rotation_arrow"
     note = "leave it out, or fewer and smaller holes"
     raise work.refusal(what, None, None, note, (Adjustment(near={key: False}),), key)
 
 
-def _arcs(free: Polygon, way: complex, stroke: float, core: float) -> Iterator[Loop]:
+def _arcs(free: Polygon, way: complex, line: float, core: float) -> Iterator[Loop]:
     """Yield arcs about the axis, the longest first, then those in the middle of the metal."""
     outer = float(np.abs(free.bounds).max()) if not free.is_empty else 0.0
     radii = np.linspace(core, outer, _PLACES + 2)[1:-1]
@@ -104,16 +104,16 @@ def _arcs(free: Polygon, way: complex, stroke: float, core: float) -> Iterator[L
     turns = 2.0 * math.pi * np.arange(_PLACES) / _PLACES
     for sweep in _SWEEPS:
         for radius in radii.tolist():
-            if radius * sweep < 2.0 * _HEAD[1] * stroke:
+            if radius * sweep < 2.0 * _HEAD[1] * line:
                 continue
             for turn in turns.tolist():  # from the top on
-                yield _arc(radius, 0.5 * math.pi + turn, float(sweep), way.real, stroke)
+                yield _arc(radius, 0.5 * math.pi + turn, float(sweep), way.real, line)
 
 
-def _arc(radius: float, middle: float, sweep: float, hand: float, stroke: float) -> Loop:
+def _arc(radius: float, middle: float, sweep: float, hand: float, line: float) -> Loop:
     """Return an arrow along an arc about the origin, counter-clockwise if `hand` is 1."""
-    half, wide = 0.5 * stroke, 0.5 * _HEAD[0] * stroke
-    head = _HEAD[1] * stroke / radius
+    half, wide = 0.5 * line, 0.5 * _HEAD[0] * line
+    head = _HEAD[1] * line / radius
     start, end = -0.5 * sweep, 0.5 * sweep - head
     bend = math.tan(0.25 * (end - start))
     outside, inside = radius + half, radius - half
@@ -133,7 +133,7 @@ def _arc(radius: float, middle: float, sweep: float, hand: float, stroke: float)
     return Loop(points=points * cmath.exp(1j * middle), bulges=bulges)
 
 
-def _straight(free: Polygon, way: complex, stroke: float, _: float) -> Iterator[Loop]:
+def _straight(free: Polygon, way: complex, line: float, _: float) -> Iterator[Loop]:
     """Yield straight arrows, the longest first, then those in the middle of the metal."""
     if free.is_empty:
         return
@@ -143,9 +143,9 @@ def _straight(free: Polygon, way: complex, stroke: float, _: float) -> Iterator[
     along = abs((size * unit.conjugate()).real)
     steps = np.linspace(-0.5, 0.5, _PLACES)
     steps = steps[np.argsort(np.abs(steps), kind="stable")].tolist()
-    half, wide = 0.5 * stroke, 0.5 * _HEAD[0] * stroke
+    half, wide = 0.5 * line, 0.5 * _HEAD[0] * line
     for share in _LENGTHS:
-        length, head = share * along, _HEAD[1] * stroke
+        length, head = share * along, _HEAD[1] * line
         if length < 2.0 * head:
             continue
         tail, neck, tip = -0.5 * length, 0.5 * length - head, 0.5 * length

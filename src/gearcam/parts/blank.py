@@ -36,7 +36,6 @@ from gearcam.base.quantities import (
     positive_length,
 )
 from gearcam.base.rules import Breach, Rule, below, excludes, needs, only_with
-from gearcam.gears.spec import Bar
 
 KIND: Final = "parts"
 """The checks of parts."""
@@ -122,6 +121,10 @@ def least_metal(*, example: float, doc: str) -> Any:
     return param(LENGTH, default=None, example=example, doc=doc, **bounds)
 
 
+ZERO_MARK: Final = "whether a mark in the front face shows where the follower begins its motion"
+"""Meaning of a key."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class ShaftBlank(ShortRepr):
     """Bore, hub, holes and marks of what turns on a shaft, mm and rad; 0 or None means none.
@@ -183,11 +186,7 @@ class ShaftBlank(ShortRepr):
         default=False,
         doc="whether an arrow in the front face shows how the part turns",
     )
-    zero_mark: bool = param(
-        TEXT,
-        default=False,
-        doc="whether a mark in the front face shows where the follower begins its motion",
-    )
+    zero_mark: bool = param(TEXT, default=False, doc=ZERO_MARK)
     density: float | None = param(
         DENSITY,
         default=None,
@@ -378,11 +377,6 @@ class BarSpec(RowBlank):
         "the middle of a gap, after whole teeth; its end face then meets the line of centres at "
         "phi1 = 0, as a timing mark would",
     )
-
-    @property
-    def bar(self) -> Bar:
-        """The sizes of the bar."""
-        return Bar(height=self.height, in_gap=self.ends == "gap")
 
 
 def _both(name: str, hint: Any, default: Any) -> tuple[str, Any, Any]:

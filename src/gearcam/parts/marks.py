@@ -13,7 +13,7 @@ from typing import Final
 from gearcam.base.adjustments import Adjustment
 from gearcam.base.errors import beyond_limit
 from gearcam.base.numerals import formatted
-from gearcam.parts.arrows import DEPTH_PART, STROKES
+from gearcam.parts.arrows import DEPTH_PART, LINES
 from gearcam.parts.body import Mark
 
 MARK_DIAMETER: Final = 0.4
@@ -52,7 +52,7 @@ def zero_mark(point: complex, inwards: complex, width: float, process: str) -> M
     Mark
         A diameter away from the edge.
     """
-    size, depth = _DIMPLES[process], min(STROKES[process][1], DEPTH_PART * width)
+    size, depth = _DIMPLES[process], min(LINES[process][1], DEPTH_PART * width)
     return Mark(center=point + 1.5 * size * inwards, diameter=size, depth=depth)
 
 

@@ -22,6 +22,7 @@ from gearcam.base.quantities import (
     Param,
     Quantity,
     allowance,
+    fixed,
     param,
     params_of,
     positive_length,
@@ -29,7 +30,7 @@ from gearcam.base.quantities import (
 from gearcam.base.rules import Breach, needs
 from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, pose_param, studies_param
 from gearcam.dynamics.integrate import METHODS
-from gearcam.parts.blank import OPENING_RULES, ShaftBlank, widening_rules
+from gearcam.parts.blank import OPENING_RULES, ZERO_MARK, WheelBlank, widening_rules
 
 NAME: Final = "cam"
 """As in a file."""
@@ -41,7 +42,7 @@ CAM_FORMATS: Final = (*FORMATS, "tool-path", "curvature")
 
 
 @dataclass(frozen=True, kw_only=True)
-class CamBlank(ShaftBlank):
+class CamBlank(WheelBlank):
     """Bore, hub, holes, marks and material of a cam.
 
     Parameters
@@ -60,6 +61,12 @@ class CamBlank(ShaftBlank):
     clearance_bores: bool = param(
         TEXT, default=False, doc="whether bore and bolt holes are widened by the clearance too"
     )
+
+    zero_mark: bool = param(TEXT, default=False, doc=ZERO_MARK)
+    stop_pin: float = fixed(0.0)
+    timing_marks: bool = fixed(False)
+    mark_diameter: float | None = fixed(None)
+    tip_rounding: float = fixed(0.0)
 
     rules = (*OPENING_RULES, *widening_rules("bore_diameter", "bolts"))
 

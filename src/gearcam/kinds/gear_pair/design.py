@@ -161,7 +161,12 @@ class GearPairDesign(Design):
     @property
     def back(self) -> RingSpec | Bar:
         """What is behind the teeth of an open ring or a rack."""
-        return self.bar.bar if self.law_type == "rack" else self.ring
+        return self.bar_sizes if self.law_type == "rack" else self.ring
+
+    @property
+    def bar_sizes(self) -> Bar:
+        """Height and ends of a rack."""
+        return Bar(height=self.bar.height, in_gap=self.bar.ends == "gap")
 
     @property
     def law_type(self) -> str:
@@ -207,11 +212,12 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     if on_rack and radii and radii[0] != radii[1]:
         message = "wheel 2 is a rack and has no journal"
         yield Fault(("friction", "journal_radius_mm"), message, allowed="one radius")
-    bar = document.get("bar")
-    if not on_rack and isinstance(law, Mapping) and isinstance(bar, Mapping):
-        for key, value in bar.items():
-            message, rule = "is for a rack, and both elements are wheels", 'law.type = "rack"'
-            yield Fault(("bar", key), message, value, rule)
+    bar = found.parts.get("bar", BarSpec())
+    if not on_rack and isinstance(law, Mapping):
+        for entry in table_of("bar", BarSpec).entries.values():
+            if (value := getattr(bar, entry.name)) != entry.default:
+                message = f"{show(value)}: is for a rack, and both elements are wheels"
+                yield Fault(("bar", entry.key), message, value, 'law.type = "rack"')
     if on_rack:
         yield from _unmade(blank, _OF_HOLES, "is a rack and has no openings and no hub")
     elif isinstance(pair, Mapping) and pair.get("type") == "internal":

@@ -101,7 +101,7 @@ class MadePair(PartsResult):
                 self.tolerances,
                 self._finish,
                 self.design.ring.cutter_teeth,
-                self.design.bar.bar,
+                self.design.bar_sizes,
             )
 
     @property

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from gearcam.base.errors import beyond_limit
 from gearcam.base.facts import Fact
-from gearcam.base.quantities import LENGTH, REQUIRED, TEXT, param, positive_length
+from gearcam.base.quantities import LENGTH, REQUIRED, TEXT, fixed, param, positive_length
 from gearcam.base.rules import Breach, below
 from gearcam.cams.groove import GrooveCam, make_groove
 from gearcam.cams.placing import make_round_follower
@@ -24,8 +24,9 @@ from gearcam.cams.spec import (
 from gearcam.designs.faults import Fault, show
 from gearcam.kinds.cam.forms.base import Form
 from gearcam.kinds.cam.forms.disc import STEM, TOOL_PATH, marker, workpiece
+from gearcam.kinds.cam.tables import CamBlank
 from gearcam.kinds.cam.wall_facts import curvature, size, start_angle, trimming
-from gearcam.parts.blank import ShaftBlank
+from gearcam.parts.blank import OPENING_RULES
 
 if TYPE_CHECKING:
     from gearcam.kinds.cam.forms.base import Parts
@@ -89,13 +90,13 @@ class GrooveSpec(CamSpec):
 
 
 @dataclass(frozen=True, kw_only=True)
-class GrooveBlank(ShaftBlank):
+class GrooveBlank(CamBlank):
     """The blank of a groove cam: its bores are as they are given.
 
     Parameters
     ----------
-    stop_pin, timing_marks, mark_diameter, clearance, clearance_bores, tip_rounding
-        A groove has the clearance of its roller.
+    clearance, clearance_bores
+        A groove has the clearance of its roller instead.
 
     Examples
     --------
@@ -104,8 +105,13 @@ class GrooveBlank(ShaftBlank):
     GrooveBlank(bore_diameter=16)
     """
 
+    clearance: float = fixed(0.0)
+    clearance_bores: bool = fixed(False)
+
     without: ClassVar[str] = "the clearance of a groove is cam.roller_clearance_mm"
     """Why it does not have what other blanks have."""
+
+    rules = OPENING_RULES
 
 
 class Groove(Form[GrooveCam, GrooveSpec, GrooveFollower]):

@@ -128,7 +128,8 @@ class PlateSpec(CamSpec):
 class PlateBlank(RowBlank):
     """The blank of a translating cam: a plate with a row of mounting holes.
 
-    Its `density`, `clearance`, `chamfer` and marks are those of a `CamBlank`.
+    Its `density`, `clearance`, `chamfer`, `rotation_arrow` and `zero_mark` are those of a
+    `CamBlank`.
 
     Parameters
     ----------
