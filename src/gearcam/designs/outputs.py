@@ -20,7 +20,7 @@ FORMATS: Final = (
 )  # fmt: skip
 """Kinds of files that ``output.files`` may list."""
 
-PROCESSES: Final = ("printing", "laser", "wire", "mill")
+PROCESSES: Final = ("printing", "laser", "wire", "milling")
 """How parts are made."""
 
 _FILES: Final = "files to write; summary.json is always written"

@@ -27,6 +27,10 @@ _HEADER: Final = """\
 # its comment begins with (example): then there is no fixed default, the value is an example."""
 
 
+_MARKS: Final = ("rotation_arrow", "zero_mark")
+"""What a part is marked with when it is known how it is made."""
+
+
 def template(kind: str, name: str = "", process: str = "") -> str:
     """Return the text of a commented design file that builds as it is.
 
@@ -81,7 +85,7 @@ def process_problem(kind: str, process: str) -> Problem | None:
 
 
 def _lines(kind: DesignKind, name: str, process: str) -> Iterator[str]:
-    more = kind.processes[process] if process else {}
+    more = _preset(kind, process) if process else {}
     yield _HEADER.format(doc=f"{kind.doc[0].upper()}{kind.doc[1:]}")
     yield f'kind = "{kind.name}"'
     yield key_line("name", name, "name of the output folder")
@@ -94,6 +98,17 @@ def _lines(kind: DesignKind, name: str, process: str) -> Iterator[str]:
         table = _shown(kind.table(title), kind.samples.get(title, {}))
         for one in given if isinstance(given, list) else [given]:
             yield from _table(head, table, {**one, **more.get(title, {})}, note)
+
+
+def _preset(kind: DesignKind, process: str) -> dict[str, dict[str, Any]]:
+    """Return the tables of a template for a `process`: those of the kind, and marks as it makes."""
+    own = kind.processes[process]
+    marks = [name for name in _MARKS if name in kind.table("blank").entries]
+    return {
+        **own,
+        "blank": {**own.get("blank", {}), **dict.fromkeys(marks, True)},
+        "output": {**own.get("output", {}), "process": process},
+    }
 
 
 def _node(node: Node, title: str, example: Any, note: str) -> Iterator[str]:

@@ -30,7 +30,7 @@ LINES: Final = {
     "printing": (1.0, 0.6),
     "laser": (0.5, 0.2),
     "wire": (0.5, 0.2),
-    "mill": (1.0, 0.3),
+    "milling": (1.0, 0.3),
 }
 """Width and largest depth of a line by process, mm: two passes of a nozzle of 0.4 mm and two
 layers; a line that is engraved beside the cut; a cutter of 1 mm."""

@@ -29,7 +29,7 @@ RIM_PART: Final = 1 / 3
 """Largest size of a mark with its gap, as a share of the rim between bore and root."""
 
 
-_DIMPLES: Final = {"printing": 2.0, "laser": 1.0, "wire": 1.0, "mill": 1.5}
+_DIMPLES: Final = {"printing": 2.0, "laser": 1.0, "wire": 1.0, "milling": 1.5}
 """Diameter of zero marks by process, mm."""
 
 

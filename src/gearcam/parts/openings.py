@@ -95,7 +95,7 @@ class Workpiece:
     travel: float | None = None
     wheel: int | None = None
     within: str = "the outline"
-    process: str = "mill"
+    process: str = "milling"
     bar: bool = False
 
     def points(self, edge: Edge) -> Array:

@@ -87,7 +87,7 @@ def _part(gears: list[Gear], design: GearPairDesign) -> Part:
         rim=RIM * gear.pair.module,
         travel=travel,
         wheel=wheel,
-        process=design.output.process or "mill",
+        process=design.output.process or "milling",
     )
     contours = [one.profile.contour for one in gears]
     width, way = design.pair.face_width, _way(gear)
@@ -139,7 +139,7 @@ def _ring(gears: list[Gear], design: GearPairDesign) -> Part:
         circle = Circle(center=0j, diameter=2.0 * (roots + rim))
         contours = [circle if around else outside(gear.profile, rim)] * len(gears)
     inner = toothed if gear.hollow else []
-    process = design.output.process or "mill"
+    process = design.output.process or "milling"
     work = Workpiece(name="wheel 2", rim=RIM * gear.pair.module, wheel=2, process=process)
     wall = limit_of(PARTS_KIND, "thin-wall", design.limits)
 
