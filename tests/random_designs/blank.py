@@ -82,3 +82,32 @@ def _edges(d: Draw, unit: float, made: dict[str, Any]) -> None:
         made["timing_marks"] = d.chance(0.3)
     if made.get("timing_marks", True) and d.chance(0.2):
         made["mark_diameter_mm"] = short(unit * d.even(0.2, 0.6))
+
+
+def marks(d: Draw, design: dict[str, Any], unit: float, mark: str = "") -> None:
+    """Ask for chamfers, an arrow, a mark and a set screw in a few designs.
+
+    Parameters
+    ----------
+    d : Draw
+        Random numbers of this design.
+    design : dict
+        The design, which is changed.
+    unit : float, mm
+        Size of the details of its edges.
+    mark : str
+        The key of a mark that is not there unless it is asked for.
+    """
+    if not d.chance(0.12):
+        return
+    made: dict[str, Any] = design.setdefault("blank", {})
+    if d.chance(0.5):
+        made["chamfer_mm"] = short(unit * d.log(0.01, 0.1))
+    if d.chance(0.5):
+        made["rotation_arrow"] = True
+        design["output"]["process"] = d.pick(["printing", "laser", "wire", "milling"])
+    if mark and d.chance(0.5):
+        made[mark] = True
+    if isinstance(made.get("bore_diameter_mm"), float | int) and "hub_diameter_mm" in made:
+        made["set_screw_mm"] = d.pick([2, 2.5, 3, 4, 5, 6, 8])
+        made["set_screw_angle_deg"] = d.even(-90, 90)

@@ -11,7 +11,7 @@ from typing import Any, Final
 from gearcam.designs.outputs import MESHES
 from gearcam.kinds.cam.tables import GOALS
 from gearcam.laws.motion import MOTION_LAWS
-from random_designs.blank import blank
+from random_designs.blank import blank, marks
 from random_designs.draw import Draw, short
 from random_designs.goals import seek
 from random_designs.laws import random_motion_law
@@ -336,4 +336,5 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     _studies(d, made, size)
     disc = made["cam"].get("form", "disc") == "disc"
     seek(made, index, *(GOALS if disc else ("cam.pressure_angle_deg.max", "motion.peak_jerk")))
+    marks(d, made, 0.05 * size, "zero_mark")
     return made

@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from gearcam.designs.outputs import MESHES
 from gearcam.laws.ratio import LAWS
-from random_designs.blank import blank, without_openings
+from random_designs.blank import blank, marks, without_openings
 from random_designs.draw import Draw, short
 from random_designs.goals import seek
 from random_designs.law_draw import Counts, LawDraw
@@ -189,4 +189,20 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     drive(d, made)
     seek(made, index, "pair.center_distance_mm", "mesh.acceleration_max")
     loaded(d, made, module, None if closed and not opened else 10.0)
-    return made
+    marks(d, made, module)
+    return made | ({"bar": _bar(d, module)} if not closed else {})
+
+
+def _bar(d: Draw, module: float) -> dict[str, Any]:
+    """Return the bar of a rack."""
+    bar: dict[str, Any] = {"height_mm": short(module * d.even(4, 30))}
+    if d.chance(0.5):
+        bar["ends"] = d.pick(["tooth", "gap"])
+    if d.chance(0.5):
+        bar |= {
+            "bolts": 2,
+            "bolt_diameter_mm": short(module * d.even(0.2, 1)),
+            "bolt_spacing_mm": short(module * d.even(3, 9)),
+            "bolt_height_mm": short(module * d.even(0.7, 2)),
+        }
+    return bar

@@ -10,6 +10,7 @@ from typing import Any, Final
 
 from gearcam.designs.outputs import MESHES
 from gearcam.laws.motion import MOTION_LAWS
+from random_designs.blank import marks
 from random_designs.draw import Draw, short
 from random_designs.goals import seek
 from random_designs.laws import random_motion_law
@@ -76,4 +77,5 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     drive(d, made)
     turret_forces(d, made)
     seek(made, index, "cam.pressure_angle_deg.max", "cam.length_mm")
+    marks(d, made, 0.2 * radius, "zero_mark")
     return made

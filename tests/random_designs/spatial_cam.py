@@ -10,6 +10,7 @@ from typing import Any, Final
 
 from gearcam.designs.outputs import MESHES
 from gearcam.laws.motion import MOTION_LAWS
+from random_designs.blank import marks
 from random_designs.cam import motion_by_phases, motion_of_turn
 from random_designs.draw import Draw, short
 from random_designs.goals import seek
@@ -73,6 +74,7 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     drive(d, made)
     forces_in_space(d, made, swings)
     seek(made, index, "cam.pressure_angle_deg.max", "cam.outer_diameter_mm")
+    marks(d, made, 0.2 * radius, "zero_mark")
     return made
 
 

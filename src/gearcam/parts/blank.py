@@ -170,8 +170,8 @@ class ShaftBlank(ShortRepr):
     lightening_holes: int = _count(doc="number of round lightening holes", le=36)
     rim: float | None = least_metal(
         example=6,
-        doc="least metal between lightening holes and roots, profile or groove; if left out 2.7 "
-        "modules of a wheel, two thirds of the thickness of a cam, the depth of a groove around it",
+        doc="least metal between lightening holes and the edge or groove around them; if left out "
+        "2.7 modules, two thirds of the thickness of a cam, or the depth of a groove",
     )
     web: float | None = least_metal(
         example=5,
