@@ -100,6 +100,7 @@ if TYPE_CHECKING:
     from gearcam.kinds import build
     from gearcam.laws import motion as motion_laws
     from gearcam.numeric.columns import Columns
+    from gearcam.parts.fits import FitSize
     from gearcam.results.advice import Remedies
     from gearcam.results.result import Result
     from gearcam.results.study import StudyResult
@@ -108,8 +109,9 @@ if TYPE_CHECKING:
 
 
 __all__ = [
-    "Columns", "Design", "DesignError", "Facts", "Finding", "GearcamError", "InfeasibleError",
-    "MissingExtraError", "Optimum", "Result", "StudyResult", "Sweep", "Tolerances", "WriteError",
+    "Columns", "Design", "DesignError", "Facts", "Finding", "FitSize", "GearcamError",
+    "InfeasibleError", "MissingExtraError", "Optimum", "Result", "StudyResult", "Sweep",
+    "Tolerances", "WriteError",
     "__version__",
     "build",
     "design", "laws", "load", "loads", "motion_laws", "optimize", "remedies", "sweep",
@@ -126,6 +128,7 @@ _HOMES = {
     "gearcam.laws": ("laws",),
     "gearcam.laws.motion": ("motion_laws",),
     "gearcam.numeric.columns": ("Columns",),
+    "gearcam.parts.fits": ("FitSize",),
     "gearcam.results.result": ("Result",),
     "gearcam.results.study": ("StudyResult",),
     "gearcam.sweeps.search": ("Optimum", "optimize"),

@@ -92,7 +92,7 @@ def word(value: Any) -> str:
     if isinstance(value, bool | int):
         return str(value)
     if isinstance(value, float | complex):
-        return f"{value:.6g}"
+        return repr(str(value)) if hasattr(value, "tolerance_class") else f"{value:.6g}"
     if getattr(value, "shape", None):
         return f"array{value.shape}"
     if isinstance(value, tuple | list | Mapping):

@@ -103,6 +103,9 @@ LONGEST: Final = 1e5
 LEAST_ALLOWANCE: Final = 1e-6
 """Least amount that is taken off, as clearance or kerf, mm: it may be far below any size."""
 
+NONE: Final = "none"
+"""The word for what there is none of, where words may be given."""
+
 FINEST: Final = 1e-9
 """Least tolerance of a design, mm."""
 
@@ -122,7 +125,8 @@ class Param:
     gt, ge, lt, le : float or None
         Bounds of each value, in the unit of files.
     zero_is_none : bool
-        Whether 0 means that there is none; other values are then at least `least`.
+        Whether 0, or the word `NONE`, means that there is none; other values are then at least
+        `least`.
     finest : float
         Least value beside 0 where it is not that of the quantity, which is for sizes.
     choices : collection of str or None
@@ -156,6 +160,8 @@ class Param:
         What to tell of the value 0 where it is not allowed.
     solvable : bool
         Whether "solve" may be given in the place of a value, which the program then finds.
+    fit : bool
+        Whether the diameter or the width of a hole may have a tolerance class: ``25 H7``.
     """
 
     quantity: Quantity = NUMBER
@@ -180,6 +186,7 @@ class Param:
     constant_at: float | Literal["mean"] | None = None
     at_zero: str = ""
     solvable: bool = False
+    fit: bool = False
 
     def __post_init__(self) -> None:
         if self.gt == 0.0 and self.quantity.least:
