@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from gearcam.base.numerals import formatted
+from gearcam.base.quantities import NONE
 
 Breach = tuple[str, int | None, str, str]
 """A broken rule: field (empty for the table), index of an item, message, what is allowed."""
@@ -42,7 +43,7 @@ class Value:
     default : object
         Its default; None without one.
     zero_is_none : bool
-        Whether 0 means that there is none.
+        Whether 0, or the word for it, means that there is none.
     wrong : bool
         Whether it is wrong by itself, or its key misspelt.
     contents : tuple
@@ -91,7 +92,9 @@ class Value:
         return self.missing and all(self._is_none(one) for one in self.contents)
 
     def _is_none(self, value: Any) -> bool:
-        return value is None or (self.zero_is_none and _is_number(value) and value == 0)
+        if not self.zero_is_none:
+            return value is None
+        return value is None or value == NONE or (_is_number(value) and value == 0)
 
 
 @dataclass(frozen=True, kw_only=True)

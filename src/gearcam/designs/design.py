@@ -41,6 +41,7 @@ from gearcam.designs.reader import (
 )
 from gearcam.designs.table import settled
 from gearcam.numeric.arguments import instance
+from gearcam.parts.fits import FitSize
 
 _PLACE: Final = re.compile("[0-9]{1,9}")
 """Index of an item in a list."""
@@ -535,6 +536,8 @@ def _plain(value: Any) -> Any:
     """Return a document with types of TOML: numpy numbers and arrays become Python ones."""
     if isinstance(value, Mapping):
         return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, FitSize):
+        return str(value)
     value = value.tolist() if hasattr(value, "tolist") else value
     return [_plain(item) for item in value] if isinstance(value, list | tuple) else value
 

@@ -16,6 +16,7 @@ from gearcam.designs.lines import Path
 from gearcam.designs.measures import measure_hint
 from gearcam.designs.slips import did_you_mean, nearest
 from gearcam.designs.table import Key, default_of
+from gearcam.parts.fits import hole_problem
 
 MISSING: Final = object()
 """Value of a fault about a missing key."""
@@ -173,6 +174,8 @@ def _single(entry: Key) -> str:
         return _KINDS[entry.base]
     words = ["0 or" * bool(entry.param.least), f"a {_KINDS[entry.base]}", bounds(entry)]
     text = " ".join(word for word in words if word)
+    if entry.param.fit:
+        return f'{text}, or with a class of ISO 286, such as "25 H7"'
     return f'{text}, or "{entry.literal}"' if entry.literal else text
 
 
@@ -231,7 +234,12 @@ def value_fault(path: Path, value: Any, entry: Key, *, item: bool = False) -> Fa
     item : bool
         Whether the value is an item of a list.
     """
-    message = _objection(value, entry)
+    if entry.param.fit and isinstance(value, str):
+        what, rule, near = hole_problem(value)
+        if what:
+            hint = near and f'did you mean "{near}"?'
+            return Fault(path, f"{show(value)}: {what}", value, rule, hint)
+    message = _objection(entry.number(value), entry)
     if not message:
         return None
     words = entry.param.choices or ((entry.literal,) if entry.literal else ())
@@ -317,5 +325,6 @@ def _list_hint(value: Any, entry: Key) -> str:
 def _type_hint(value: Any, entry: Key) -> str:
     if isinstance(value, str) and entry.base in (int, float):
         unit = entry.param.quantity.unit
-        return measure_hint(value, unit, lambda x: not _objection(short(x), entry), entry.key)
+        ok = lambda x: not _objection(short(x), entry)  # noqa: E731
+        return measure_hint(value, unit, ok, entry.key, classes=entry.param.fit)
     return "write the text in quotes" if entry.base is str and not entry.param.choices else ""

@@ -48,11 +48,19 @@ _MEASURE: Final = re.compile(
 """A number or a fraction, such as 1 1/4: with a unit, the sign of a diameter or a radius before it,
 a fit of ISO 286 behind it, or none of these."""
 
+_OF_SHAFT: Final = re.compile(r"(?<=\d)\s*/\s*[a-z]{1,2}\d{1,2}$")
+"""The class of the shaft in a fit such as 25 H7/g6."""
+
 _VULGAR: Final = re.compile("[\u00bc-\u00be\u2150-\u215e]")
 
 
 def measure_hint(
-    text: str, unit: str, fits: Callable[[float], bool] = math.isfinite, key: str = ""
+    text: str,
+    unit: str,
+    fits: Callable[[float], bool] = math.isfinite,
+    key: str = "",
+    *,
+    classes: bool = False,
 ) -> str:
     """Return how to write a measure, or a screw's size, as a number; empty if it is neither.
 
@@ -66,8 +74,11 @@ def measure_hint(
         ``fits(number)`` tells whether the key allows a number: no other is proposed.
     key : str
         The key, which may say that it is a radius or a diameter.
+    classes : bool
+        Whether the key takes classes of ISO 286 for holes.
     """
     text, of_length = typed(text.strip()), unit == "mm"
+    text = _OF_SHAFT.sub("", text) if classes else text
     if of_length and (screw := _SCREW.fullmatch(text)):
         nominal = float(screw[1])
         size, hole = f"M{formatted(nominal)}", _CLEARANCE.get(nominal)
@@ -82,6 +93,9 @@ def measure_hint(
     rate = factor(given, unit) if given not in ("", unit) else 1.0
     if rate is None or not (of_length or found["across"] is found["radius"] is found["fit"]):
         return _alone(given, unit)
+    if classes and found["fit"]:
+        size = formatted(_number(found) * rate, 10)
+        return f'write "{size} {found["fit"].upper()}"' if fits(float(size)) else ""
     return _as_number(found, _number(found) * rate, unit, fits, key)
 
 

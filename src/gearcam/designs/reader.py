@@ -236,7 +236,16 @@ def _measure_hint(line: str) -> str:
     key, value = found[1], found[3]
     unit = unit_of(key)
     # without a unit a fraction may be meant as two numbers
-    return "" if "/" in value and not unit else measure_hint(value, unit, key=key)
+    if "/" in value and not unit:
+        return ""
+    classes = value[-1:].isdigit() and _takes_classes(key)
+    return measure_hint(value, unit, key=key, classes=classes)
+
+
+def _takes_classes(key: str) -> bool:
+    """Return whether a key of some kind of design may have a tolerance class."""
+    tables = (kind.table(title) for kind in KINDS.values() for title in kind.tables)
+    return any(key in one.entries and one.entries[key].param.fit for one in tables)
 
 
 def _typeset(line: str) -> tuple[int, str, str] | None:

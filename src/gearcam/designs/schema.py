@@ -10,12 +10,13 @@ from collections import ChainMap
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any, Final
 
-from gearcam.base.quantities import REQUIRED
+from gearcam.base.quantities import NONE, REQUIRED
 from gearcam.base.rules import Field, Fields, Rule
 from gearcam.designs.faults import description
 from gearcam.designs.kind import KINDS, OF_MANY, DesignKind, Variants, variant_of
 from gearcam.designs.nodes import Choice, Either, Keys, Many, Node
 from gearcam.designs.table import Key, Table, default_of
+from gearcam.parts.fits import HOLE
 
 DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
 
@@ -238,7 +239,7 @@ def _fields(table: Table, title: str = "") -> dict[str, Field]:
         start + entry.name: Field(
             path=(*above, key),
             default=default_of(entry),
-            none=(0,) if entry.param.zero_is_none else (),
+            none=(NONE if entry.base is str else 0,) if entry.param.zero_is_none else (),
             both=entry.param.both,
         )
         for key, entry in table.entries.items()
@@ -285,4 +286,6 @@ def _single(key: Key) -> Schema:
         single = {"type": _TYPES[key.base]}
         single |= {word: bound for word, bound in bounds.items() if bound is not None}
     other = key.literal or (0 if param.least else None)
-    return single if other is None else {"anyOf": [single, {"const": other}]}
+    more = [] if other is None else [{"const": other}]
+    more += [{"type": "string", "pattern": HOLE}] if param.fit else []
+    return {"anyOf": [single, *more]} if more else single

@@ -214,7 +214,10 @@ def _likeness(key: str, entry: Key) -> float:
     stem, unit = _split(key)
     quantity = entry.param.quantity
     names = {entry.key.removesuffix(quantity.suffix), entry.name}
-    score = max(_words_likeness(_words(_NAMES.get(stem, stem)), _words(name)) for name in names)
+    words = _words(_NAMES.get(stem, stem))
+    # a key that is called like another word for something else is that key
+    known = ([name] if name in _SPELLINGS else _words(name) for name in names)
+    score = max(_words_likeness(words, one) for one in known)
     other = unit and not quantity.unit.startswith(_UNITS[unit])
     return score - _OTHER_UNIT if other else score
 

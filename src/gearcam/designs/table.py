@@ -17,6 +17,7 @@ from functools import cached_property, lru_cache
 from typing import Any
 
 from gearcam.base.quantities import OPPOSITES, REQUIRED, Param, Solve, params_of
+from gearcam.parts.fits import FitSize, fitted
 
 
 @dataclass(frozen=True)
@@ -58,6 +59,10 @@ class Key:
         """Return whether its list may have `count` values."""
         return count == self.length if self.length else count >= (self.param.min_length or 0)
 
+    def number(self, value: Any) -> Any:
+        """Return a single value of a file; if it is the text of a size with a class, as a size."""
+        return fitted(value) if self.param.fit and isinstance(value, str) else value
+
     def inward(self, value: Any) -> Any:
         """Convert a valid value from the unit of the file into mm or rad; lists become tuples."""
         if self.param.both and not isinstance(value, list | tuple):
@@ -69,7 +74,8 @@ class Key:
         return self._inward(value)
 
     def _inward(self, value: Any) -> Any:
-        if self.base is not float or isinstance(value, str):
+        value = self.number(value)
+        if self.base is not float or isinstance(value, str | FitSize):
             return value
         return float(value) * self.param.quantity.factor
 
@@ -88,6 +94,8 @@ class Key:
 
     def _outward(self, value: Any) -> Any:
         value = value.item() if hasattr(value, "item") else value
+        if isinstance(value, FitSize):
+            return str(value)
         factor = self.param.quantity.factor
         if factor == 1.0 or isinstance(value, bool) or not isinstance(value, int | float):
             return value
@@ -225,7 +233,7 @@ def _split(hint: Any) -> tuple[Any, str]:
 
 
 def settled(part: Any) -> Any:
-    """Return input with tuples instead of lists and arrays, and Python numbers.
+    """Return input with tuples for lists and arrays, Python numbers, and sizes for their texts.
 
     Parameters
     ----------
@@ -247,5 +255,7 @@ def settled(part: Any) -> Any:
         return part
     given = {item.name: getattr(part, item.name) for item in dataclasses.fields(part)}
     values = {name: settled(value) for name, value in given.items()}
+    fits = [name for name, one in params_of(type(part)).items() if one.fit]
+    values |= {name: fitted(values[name]) for name in fits}
     changed = {name: value for name, value in values.items() if value is not given[name]}
     return replace(part, **changed) if changed else part

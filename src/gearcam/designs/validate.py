@@ -124,11 +124,12 @@ def _values(
         if entry.param.both and isinstance(content, list):
             contents = tuple(content) if content[1:] != content[:-1] else ()
             content, path = content[wheel] if wheel < len(content) else None, (key, wheel)
+        shown = partial(_line, title + key, content, default)
         values[title + entry.name] = Value(
             key=title + key,
-            shown=partial(_line, title + key, content, default),
+            shown=shown,
             unit=entry.param.quantity.unit,
-            content=content,
+            content=entry.number(content),
             default=default,
             zero_is_none=entry.param.zero_is_none,
             wrong=not wrong.isdisjoint([(), (key,), path]),

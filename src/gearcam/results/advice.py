@@ -31,6 +31,7 @@ from gearcam.base.display import ShortRepr
 from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.designs.design import Design, document_of, nested_designs, value_at
 from gearcam.designs.faults import dotted
+from gearcam.parts.fits import fitted, in_class_of
 from gearcam.results.kind import kind_of
 from gearcam.results.nested import keyed
 
@@ -303,6 +304,11 @@ class Search:
         """The design as a document."""
         return document_of(self.result.design)
 
+    def in_class(self, changes: Changes) -> Changes:
+        """Return `changes` in which sizes keep the tolerance classes that the design gives them."""
+        given = {key: value_at(self.document, key) for key in changes}
+        return {key: in_class_of(given[key], value) for key, value in changes.items()}
+
     def over(self) -> bool:
         """Return whether the search must end: enough designs were built."""
         over = self.builds >= self.most or time.perf_counter() > self.until
@@ -386,17 +392,18 @@ class Search:
             return False
         if adjustment.steps:
             steps = adjustment.steps
-            return self._least(lambda place: steps[place - 1], range(1, len(steps) + 1))
+            every = [self.in_class(one) for one in steps]
+            return self._least(lambda place: every[place - 1], range(1, len(steps) + 1))
         far = adjustment.far
         near = {
-            key: adjustment.near.get(key, value_at(self.document, key))
+            key: adjustment.near.get(key, fitted(value_at(self.document, key)))
             for key in {**adjustment.near, **far}
         }
         if any(value is None for value in near.values()):
             return False
         places = way(near, far, size=adjustment.size)
         if adjustment.near:
-            first = places.first if far else tidy(near)
+            first = self.in_class(places.first if far else tidy(near))
             if self.cures(first):
                 self.keep(first)
                 return True
@@ -406,7 +413,7 @@ class Search:
             return False
         guess = adjustment.guess
         looks = places.from_guess(guess) if guess else places.looks
-        return self._least(places.at, looks, guessed=bool(guess))
+        return self._least(lambda one: self.in_class(places.at(one)), looks, guessed=bool(guess))
 
     def _least(
         self, at: Callable[[int], Changes], looks: Iterable[int], *, guessed: bool = False

@@ -13,6 +13,7 @@ from gearcam.designs.kind import KINDS
 from gearcam.designs.lines import Path, spans_of
 from gearcam.designs.reader import document_in
 from gearcam.designs.table import Key
+from gearcam.parts.fits import in_class_of
 from gearcam.view.names import label_of, title_of
 
 Values = Mapping[str, float]
@@ -44,13 +45,24 @@ _DIGITS: Final = 10
 
 
 def numbers(text: str) -> dict[str, float]:
-    """Return the numbers in the text of a valid design file by dotted key, in its order."""
+    """Return the numbers in the text of a valid design file by dotted key, in its order.
+
+    Of a size with a tolerance class it is the size.
+    """
     document = document_in(text, "")
+    found = ((path, _number(document, path, value)) for path, value in leaves(document))
     return {
         dotted(path): value
-        for path, value in leaves(document)
+        for path, value in found
         if isinstance(value, int | float) and not isinstance(value, bool)
     }
+
+
+def _number(document: Mapping[str, Any], path: Path, value: Any) -> Any:
+    """Return the size of a text that is one with a class, else the value."""
+    entry = _entry(document, path) if isinstance(value, str) else None
+    value = entry.number(value) if entry else value
+    return float(value) if isinstance(value, float) else value
 
 
 def sliders(
@@ -226,7 +238,13 @@ def replaced(text: str, values: Values) -> str:
 
 
 def _written(value: float, before: str) -> str:
-    """Return a number as text, without decimals if it is whole and the one `before` had none."""
+    """Return a number as text, without decimals if it is whole and the one `before` had none.
+
+    It keeps the class of a size that had one.
+    """
+    kept = in_class_of(before.strip("\"'"), value)
+    if isinstance(kept, str):
+        return f'"{kept}"'
     plain = before.lstrip("+-").replace("_", "").isdigit()
     return str(int(value)) if plain and float(value).is_integer() else repr(float(value))
 
