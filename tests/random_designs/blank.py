@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from gearcam.parts.shafts import MOTOR_SHAFTS, keyway_of
 from random_designs.draw import Draw, short
 
 
@@ -23,13 +24,8 @@ def blank(d: Draw, radius: float, unit: float, both: bool) -> dict[str, Any]:
         Whether it is for two wheels, which may differ.
     """
     made: dict[str, Any] = {}
-    bore = short(radius * d.log(0.2, 0.9)) if d.chance(0.8) else 0.0
-    reach = bore
-    if bore:
-        made["bore_diameter_mm"] = bore
-        reach = _bore(d, bore, made)
-        if both and d.chance(0.3):
-            made["bore_diameter_mm"] = [bore, short(bore * d.even(1, 1.05))]
+    reach = _shaft(d, radius, both, made) if d.chance(0.8) else 0.0
+    holds = reach > 0.0
     if d.chance(0.3):
         made["hub_diameter_mm"] = short(1.1 * reach + radius * d.even(0.05, 0.3))
         reach = made["hub_diameter_mm"]
@@ -47,8 +43,10 @@ def blank(d: Draw, radius: float, unit: float, both: bool) -> dict[str, Any]:
         made["density_kg_m3"] = d.log(100, 20000)
     if d.chance(0.2):
         made["clearance_mm"] = short(unit * d.log(1e-3, 0.05))
-        if bore or "bolts" in made:
+        if holds or "bolts" in made:
             made["clearance_bores"] = d.chance(0.5)
+    if not made.get("clearance_bores"):
+        classes(d, made)
     if both:
         _edges(d, unit, made)
     return made
@@ -56,10 +54,25 @@ def blank(d: Draw, radius: float, unit: float, both: bool) -> dict[str, Any]:
 
 def without_openings(made: dict[str, Any]) -> None:
     """Ask openings and hub of wheel 1 alone: wheel 2 is a rack."""
-    for key in ("bore_diameter_mm", "hub_diameter_mm", "bolts", "lightening_holes"):
+    for key in ("bore_diameter_mm", "shaft", "hub_diameter_mm", "bolts", "lightening_holes"):
         value = made.get(key, 0)
         if value:
-            made[key] = [value[0] if isinstance(value, list) else value, 0]
+            first = value[0] if isinstance(value, list) else value
+            made[key] = [first, "none" if key == "shaft" else 0]
+
+
+def _shaft(d: Draw, radius: float, both: bool, made: dict[str, Any]) -> float:
+    """Add a bore, or a motor's; return the diameter that it needs."""
+    motors = {name: one["bore_diameter"] for name, one in MOTOR_SHAFTS.items()}
+    if d.chance(0.15) and (names := [name for name, size in motors.items() if size < radius]):
+        made["shaft"] = d.pick(names)
+        return motors[made["shaft"]]
+    bore = short(radius * d.log(0.2, 0.9))
+    made["bore_diameter_mm"] = bore
+    reach = _bore(d, bore, made)
+    if both and d.chance(0.3):
+        made["bore_diameter_mm"] = [bore, short(bore * d.even(1, 1.05))]
+    return reach
 
 
 def _bore(d: Draw, bore: float, made: dict[str, Any]) -> float:
@@ -69,9 +82,22 @@ def _bore(d: Draw, bore: float, made: dict[str, Any]) -> float:
         angle = d.even(-180, 180)
         made |= {"keyway_width_mm": width, "keyway_depth_mm": depth, "keyway_angle_deg": angle}
         return 2.0 * math.hypot(0.5 * bore + depth, 0.5 * width)
+    if (key := keyway_of(bore)) and d.chance(0.1):
+        made["keyway"] = "DIN 6885"
+        return 2.0 * math.hypot(0.5 * bore + key.hub_depth, 0.5 * key.width)
     if d.chance(0.2):
         made["bore_flat_mm"] = short(bore * d.even(0.6, 0.95))
+    elif d.chance(0.1):
+        made["bore_across_flats_mm"] = short(bore * d.even(0.3, 0.95))
     return bore
+
+
+def classes(d: Draw, made: dict[str, Any]) -> None:
+    """Give some sizes a tolerance class."""
+    for key in ("bore_diameter_mm", "keyway_width_mm", "bolt_diameter_mm"):
+        size = made.get(key)
+        if isinstance(size, float | int) and 1.0 <= size <= 500.0 and d.chance(0.3):
+            made[key] = f"{size} {d.pick(['H7', 'F8', 'JS9', 'P9', 'D10'])}"
 
 
 def _edges(d: Draw, unit: float, made: dict[str, Any]) -> None:

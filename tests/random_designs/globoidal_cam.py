@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from gearcam.designs.outputs import MESHES
 from gearcam.laws.motion import MOTION_LAWS
-from random_designs.blank import marks
+from random_designs.blank import classes, marks
 from random_designs.draw import Draw, short
 from random_designs.goals import seek
 from random_designs.laws import random_motion_law
@@ -71,6 +71,7 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     }
     if d.chance(0.4):
         made["blank"] = {"bore_diameter_mm": short((size - reach) * d.even(0.2, 1.2))}
+        classes(d, made["blank"])
         if d.chance(0.5):
             made["blank"]["density_kg_m3"] = 7850
     studies(d, made, "solid")

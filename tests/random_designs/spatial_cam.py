@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from gearcam.designs.outputs import MESHES
 from gearcam.laws.motion import MOTION_LAWS
-from random_designs.blank import marks
+from random_designs.blank import classes, marks
 from random_designs.cam import motion_by_phases, motion_of_turn
 from random_designs.draw import Draw, short
 from random_designs.goals import seek
@@ -62,6 +62,7 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     made = {"motion": motion, "follower": follower, "cam": given, "output": _output(d)}
     if d.chance(0.4):
         made["blank"] = {"bore_diameter_mm": short(2 * (size - depth) * d.even(0.1, 0.8))}
+        classes(d, made["blank"])
         if d.chance(0.5):
             made["blank"]["density_kg_m3"] = 7850
     if d.chance(0.2):

@@ -1,17 +1,19 @@
 """Blanks: what parts have beside their teeth and cam profiles.
 
 Whatever turns on a shaft may have the same. Of a pair most values are given once for both wheels,
-or twice, driver first; 0 means that there is none. A
-*keyway* is cut into the bore; its depth counts from the bore's circle, at the middle of the keyway,
-as in shaft standards. A *D-shaped bore* has a flat. *Hubs* are raised on the faces: front is +z.
-*Lightening holes* lie between hub and rim and are as large as the rim allows. In a *stop slot* runs
-a pin of the housing, which limits the travel of an open wheel. *Clearance* is taken off the outline
-all around, and if `clearance_bores` is set, off bores, bolt holes and slots too.
+or twice, driver first; 0 means that there is none. A *keyway* is cut into the bore; its depth
+counts from the bore's circle, at the middle of the keyway, as in shaft standards. A *D-shaped bore*
+has a flat, or two that are parallel. A `shaft` has the sizes of the bore of a motor, a standard
+`keyway` those of its key. Bores, keyways and bolt holes may have a tolerance class; they are made
+with their nominal size. *Hubs* are raised on the faces: front is +z. *Lightening holes* lie between
+hub and rim and are as large as the rim allows. In a *stop slot* runs a pin of the housing, which
+limits the travel of an open wheel. *Clearance* is taken off the outline all around, and if
+`clearance_bores` is set, off bores, bolt holes and slots too.
 
 Refused when a design is read: sizes that contradict each other, and sizes without those that belong
 to them.
 
-Depends on quantities only.
+Depends on quantities, fits and shafts only.
 """
 
 from __future__ import annotations
@@ -28,6 +30,7 @@ from gearcam.base.quantities import (
     DENSITY,
     LENGTH,
     LONGEST,
+    NONE,
     TEXT,
     allowance,
     fixed,
@@ -35,12 +38,16 @@ from gearcam.base.quantities import (
     params_of,
     positive_length,
 )
-from gearcam.base.rules import Breach, Rule, below, excludes, needs, only_with
+from gearcam.base.rules import Breach, Rule, Values, below, excludes, needs, only_with
+from gearcam.parts.fits import FitSize, Fitted
+from gearcam.parts.shafts import DIN_6885, KEYWAYS, MOTOR_SHAFTS, SMALLEST, keyway_of
 
 KIND: Final = "parts"
 """The checks of parts."""
 
-_FOLLOWING: Final = ("bore_diameter", "keyway_width", "bore_flat", "bolt_diameter", "stop_pin")
+_FOLLOWING: Final = (
+    "bore_diameter", "keyway_width", "bore_flat", "bore_across_flats", "bolt_diameter", "stop_pin",
+)  # fmt: skip
 """Sizes of openings for a shaft, a bolt or a pin."""
 
 _COMMON: Final = ("timing_marks", "mark_diameter", "clearance_bores", "rotation_arrow")
@@ -49,8 +56,10 @@ _COMMON: Final = ("timing_marks", "mark_diameter", "clearance_bores", "rotation_
 _SERVES: Final = {
     "keyway_width": ("bore_diameter",),
     "keyway_depth": ("bore_diameter", "keyway_width"),
-    "keyway_angle": ("keyway_width", "bore_flat"),
+    "keyway": ("bore_diameter",),
+    "keyway_angle": ("keyway_width", "keyway", "bore_flat", "bore_across_flats", "shaft"),
     "bore_flat": ("bore_diameter",),
+    "bore_across_flats": ("bore_diameter",),
     "hub_front": ("hub_diameter",),
     "hub_back": ("hub_diameter",),
     "bolt_circle": ("bolts",),
@@ -58,7 +67,7 @@ _SERVES: Final = {
     "bolt_angle": ("bolts",),
     "rim": ("lightening_holes",),
     "web": ("lightening_holes",),
-    "set_screw": ("bore_diameter", "hub_diameter"),
+    "set_screw": ("hub_diameter",),
     "set_screw_angle": ("set_screw",),
 }
 """What says more of something else, which it needs."""
@@ -68,9 +77,14 @@ OPENING_RULES: Final = (
         needs(name, *others, one=name == "keyway_angle", serves=True)
         for name, others in _SERVES.items()
     ),
+    needs("set_screw", "bore_diameter", "shaft", one=True, serves=True),
     needs("keyway_width", "keyway_depth"),
     below("keyway_width", "bore_diameter", why="is as wide as the bore"),
-    excludes("bore_flat", "keyway_width"),
+    excludes("keyway", "keyway_width", "keyway_depth"),
+    excludes("bore_flat", "keyway_width", "keyway"),
+    excludes("bore_across_flats", "bore_flat", "keyway_width", "keyway"),
+    below("bore_across_flats", "bore_diameter", why="is as wide as the bore"),
+    excludes("shaft", "bore_diameter", "bore_flat", "bore_across_flats", "keyway_width", "keyway"),
     needs("hub_diameter", "hub_front", "hub_back", one=True),
     needs("bolts", "bolt_circle", "bolt_diameter"),
 )
@@ -93,12 +107,27 @@ def widening_rules(*openings: str) -> tuple[Rule, ...]:
     return (
         needs("clearance_bores", "clearance", serves=True),
         needs("clearance_bores", *openings, one=True, serves=True),
+        Rule(_widened_fits),
     )
 
 
-def _length(*, doc: str, le: float = LONGEST) -> Any:
+def _widened_fits(values: Values) -> Iterator[Breach]:
+    """Yield sizes that would be widened though their tolerance class says how wide they are."""
+    for name in _FOLLOWING if values["clearance_bores"].given else ():
+        size = values[name].right if name in values else None
+        if isinstance(size, FitSize):
+            what = f"would widen {values[name].text}, which has a tolerance class"
+            rule = f"without {values['clearance_bores'].key}, or a size without a class"
+            yield "clearance_bores", None, what, rule
+
+
+def _length(*, doc: str, le: float = LONGEST, fit: bool = False) -> Any:
     """Return a length; 0 means that there is nothing to measure."""
-    return param(LENGTH, default=0.0, ge=0, le=le, zero_is_none=True, doc=doc)
+    return param(LENGTH, default=0.0, ge=0, le=le, zero_is_none=True, doc=doc, fit=fit)
+
+
+def _word(*words: str, doc: str) -> Any:
+    return param(TEXT, default=NONE, choices=(NONE, *words), zero_is_none=True, doc=doc)
 
 
 def _angle(*, doc: str) -> Any:
@@ -126,7 +155,7 @@ ZERO_MARK: Final = "whether a mark in the front face shows where the follower be
 
 
 @dataclass(frozen=True, kw_only=True)
-class ShaftBlank(ShortRepr):
+class ShaftBlank(ShortRepr, Fitted):
     """Bore, hub, holes and marks of what turns on a shaft, mm and rad; 0 or None means none.
 
     Parameters
@@ -150,14 +179,22 @@ class ShaftBlank(ShortRepr):
         zero_is_none=True,
         example=20,
         doc="diameter of the bore; no bore if left out",
+        fit=True,
     )
-    keyway_width: float = _length(doc="width of the keyway")
+    shaft: str = _word(
+        *MOTOR_SHAFTS, doc="motor for whose shaft the bore is; shafts differ: measure yours"
+    )
+    keyway: str = _word(
+        DIN_6885, doc="standard keyway: width and depth by the bore, DIN 6885-1, the width with JS9"
+    )
+    keyway_width: float = _length(doc="width of the keyway", fit=True)
     keyway_depth: float = _length(doc="depth of the keyway from the bore's circle, at its middle")
-    keyway_angle: float = _angle(doc="direction of the keyway, or of the flat")
+    keyway_angle: float = _angle(doc="direction of the keyway, or of a flat")
     bore_flat: float = _length(doc="D-shaped bore: flat to opposite side, more than half the bore")
+    bore_across_flats: float = _length(doc="bore with two flats: from one to the other")
     bolts: int = _count(doc="number of bolt holes", le=100)
     bolt_circle: float = _length(doc="diameter of the bolt circle")
-    bolt_diameter: float = _length(doc="diameter of each bolt hole")
+    bolt_diameter: float = _length(doc="diameter of each bolt hole", fit=True)
     bolt_angle: float = _angle(doc="direction of the first bolt hole")
     hub_diameter: float = _length(doc="diameter of the hub, larger than the bore with its keyway")
     hub_front: float = _length(doc="height of the hub on the front face (+z)")
@@ -203,17 +240,26 @@ class ShaftBlank(ShortRepr):
     tip_rounding: float = fixed(0.0)
 
     @property
+    def sized(self) -> Self:
+        """The blank with the sizes of its shaft and of its keyway in place of their names."""
+        sizes: dict[str, Any] = dict(MOTOR_SHAFTS.get(self.shaft, {}))
+        if self.keyway == DIN_6885 and (key := keyway_of(self.bore_diameter or 0.0)):
+            sizes |= {"keyway_width": key.hub_width, "keyway_depth": key.hub_depth}
+        return replace(self, shaft=NONE, keyway=NONE, **sizes) if sizes else self
+
+    @property
     def bore(self) -> float:
         """Diameter of the bore, mm; 0 without one."""
-        return self.bore_diameter or 0.0
+        return self.sized.bore_diameter or 0.0
 
     @property
     def bore_reach(self) -> float:
         """Largest radius of the bore, mm: at the corners of its keyway, or its own."""
-        if not self.bore or not self.keyway_width:
-            return 0.5 * self.bore
-        floor = 0.5 * self.bore + self.keyway_depth
-        return float((floor**2 + 0.25 * self.keyway_width**2) ** 0.5)
+        sized = self.sized
+        if not sized.bore_diameter or not sized.keyway_width:
+            return 0.5 * (sized.bore_diameter or 0.0)
+        floor = 0.5 * sized.bore_diameter + sized.keyway_depth
+        return float((floor**2 + 0.25 * sized.keyway_width**2) ** 0.5)
 
     @property
     def core_reach(self) -> float:
@@ -223,9 +269,10 @@ class ShaftBlank(ShortRepr):
     @property
     def plain(self) -> bool:
         """Whether it has a round bore, and nothing else that is made."""
-        rest = (self.keyway_width, self.bore_flat, self.bolts, self.hub_diameter, self.chamfer)
-        marks = (self.lightening_holes, self.rotation_arrow, self.zero_mark)
-        return not any((*rest, *marks))
+        sized = self.sized
+        flats = (sized.keyway_width, sized.bore_flat, sized.bore_across_flats)
+        rest = (self.bolts, self.hub_diameter, self.chamfer, self.lightening_holes)
+        return not any((*flats, *rest, self.rotation_arrow, self.zero_mark))
 
     @property
     def widening(self) -> float:
@@ -238,11 +285,12 @@ class ShaftBlank(ShortRepr):
 
         A keyway keeps its depth, which counts from the widened bore.
         """
+        sized = self.sized
         if not self.clearance_bores:  # it may be fixed, and then cannot be replaced
-            return self
-        sizes = {name: getattr(self, name) for name in _FOLLOWING}
+            return sized
+        sizes = {name: getattr(sized, name) for name in _FOLLOWING}
         wider = {name: size + self.widening for name, size in sizes.items() if size}
-        return replace(self, clearance_bores=False, **wider)
+        return replace(sized, clearance_bores=False, **wider)
 
     rules = OPENING_RULES
 
@@ -252,6 +300,10 @@ class ShaftBlank(ShortRepr):
         if self.bore and self.bore_flat and not half < self.bore_flat < self.bore:
             rule = f"above {formatted(half)} and below the bore's {formatted(self.bore)} mm"
             yield "bore_flat", None, "the flat is not within the bore", rule
+        if self.keyway == DIN_6885 and self.bore and keyway_of(self.bore) is None:
+            what = f"the standard has no keyway in a bore of {formatted(self.bore)} mm"
+            rule = f"bores from {formatted(SMALLEST)} to {formatted(KEYWAYS[-1].largest)} mm"
+            yield "keyway", None, what, rule
         if self.hub_diameter and self.hub_diameter <= reach:
             rule = f"above {formatted(reach)} mm, the diameter across the bore"
             yield "hub_diameter", None, "the bore is as large as the hub", rule
@@ -318,7 +370,7 @@ class WheelBlank(ShaftBlank):
 
     rules = (
         *OPENING_RULES,
-        *widening_rules("bore_diameter", "bolts", "stop_pin"),
+        *widening_rules("bore_diameter", "shaft", "bolts", "stop_pin"),
         only_with(("mark_diameter",), "timing_marks", True),
     )
 
@@ -387,7 +439,7 @@ def _both(name: str, hint: Any, default: Any) -> tuple[str, Any, Any]:
     made = params_of(WheelBlank)[name]
     if name not in _COMMON:
         made, hint = replace(made, both=True), tuple[hint, hint]
-        default = None if default is None else (0, 0)
+        default = None if default is None else (default, default)
     return name, hint, field(default=default, metadata={"param": made})
 
 
@@ -408,6 +460,7 @@ else:
             for one in fields(WheelBlank)
             if one.init
         ],
+        bases=(Fitted,),
         frozen=True,
         kw_only=True,
     )

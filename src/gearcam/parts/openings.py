@@ -181,18 +181,20 @@ class Stock(ShortRepr):
 
 
 def bore(blank: ShaftBlank) -> Circle | Loop:
-    """Return the bore with its keyway or flat.
+    """Return the bore with its keyway or flats.
 
     Parameters
     ----------
     blank : ShaftBlank
-        With the sizes of its bore; the direction of keyway and flat is the same.
+        With the sizes of its bore; the direction of keyway and flats is the same. Two flats are a
+        loop of four points: the ends of the first, then those of the second.
 
     Returns
     -------
     Circle or Loop
         Around the axis.
     """
+    blank = blank.sized
     radius = 0.5 * blank.bore
     turn = cmath.exp(1j * blank.keyway_angle)
     if blank.keyway_width:
@@ -205,6 +207,12 @@ def bore(blank: ShaftBlank) -> Circle | Loop:
         half = math.sqrt(radius**2 - away**2)
         angle = 2.0 * (math.pi - math.acos(away / radius))
         return _with_arc([away + 1j * half, away - 1j * half], angle, turn)
+    if blank.bore_across_flats:
+        away = 0.5 * blank.bore_across_flats
+        corner = complex(away, math.sqrt(radius**2 - away**2))
+        ends = np.array([corner.conjugate(), corner, -corner.conjugate(), -corner])
+        bend = math.tan(0.5 * math.asin(away / radius))
+        return Loop(points=ends * turn, bulges=np.array([0.0, bend, 0.0, bend]))
     return Circle(center=0j, diameter=blank.bore)
 
 

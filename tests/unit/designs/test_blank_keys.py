@@ -108,6 +108,40 @@ KEYED = "bore_diameter_mm = 20\nkeyway_width_mm = {}\nkeyway_depth_mm = {}\n"
             "blank.hub_diameter_mm",
             "as large as the hub",
         ),
+        ('keyway = "DIN 6885"', "blank.bore_diameter_mm", "missing beside keyway"),
+        ('bore_diameter_mm = 5.9\nkeyway = "DIN 6885"', "blank.keyway", "bore of 5.9 mm"),
+        ('bore_diameter_mm = 231\nkeyway = "DIN 6885"', "blank.keyway", "bore of 231 mm"),
+        (KEYED.format(5, 2) + 'keyway = "DIN 6885"', "blank.keyway", "beside keyway_width_mm = 5"),
+        (
+            'bore_diameter_mm = 20\nkeyway = "DIN 6885"\nbore_flat_mm = 18',
+            "blank.bore_flat_mm",
+            'given beside keyway = "DIN 6885"',
+        ),
+        ('shaft = "TT"\nbore_diameter_mm = 6', "blank.shaft", "beside bore_diameter_mm = 6"),
+        ('shaft = "servo"', "blank.shaft", "not one of the allowed words"),
+        ('shaft = ["TT", "n20"]', "blank.shaft[1]", "not one of the allowed words"),
+        ("shaft = 5", "blank.shaft", "not one of the words allowed"),
+        ("bore_across_flats_mm = 3", "blank.bore_diameter_mm", "missing beside"),
+        (
+            "bore_diameter_mm = 5\nbore_across_flats_mm = 5",
+            "blank.bore_across_flats_mm",
+            "as wide as the bore",
+        ),
+        (
+            "bore_diameter_mm = 5\nbore_across_flats_mm = 4\nbore_flat_mm = 4",
+            "blank.bore_across_flats_mm",
+            "given beside bore_flat_mm = 4",
+        ),
+        (
+            'shaft = "NEMA 23"\nhub_diameter_mm = 6\nhub_front_mm = 3',
+            "blank.hub_diameter_mm",
+            "as large as the hub",
+        ),
+        (
+            'bore_diameter_mm = 25\nkeyway = "DIN 6885"\nhub_diameter_mm = 31\nhub_back_mm = 3',
+            "blank.hub_diameter_mm",
+            "as large as the hub",
+        ),
     ],
 )
 def test_contradictions_are_refused_by_reading(text: str, key: str, words: str) -> None:
@@ -115,6 +149,17 @@ def test_contradictions_are_refused_by_reading(text: str, key: str, words: str) 
     assert problem.key == key
     assert words in problem.message
     assert problem.allowed
+
+
+def test_a_shaft_is_a_bore_for_what_belongs_to_one() -> None:
+    wide = "clearance_mm = 0.1\nclearance_bores = true\n"
+    blank = read('shaft = ["28BYJ-48", "none"]\nkeyway_angle_deg = 30\n' + wide).blank
+    assert [blank.wheel(k).bore for k in (1, 2)] == [5.0, 0.0]
+    assert (
+        read('bore_diameter_mm = [20, 0]\nkeyway = ["DIN 6885", "none"]').blank.wheel(2).bore == 0
+    )
+    (problem,) = problems(GOOD + 'shaft = "none"\n' + wide)
+    assert "missing beside clearance_bores" in problem.message
 
 
 def test_two_values_are_judged_one_by_one() -> None:

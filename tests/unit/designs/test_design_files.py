@@ -117,7 +117,7 @@ def test_a_problem_carries_file_line_key_value_rule_and_hint() -> None:
     assert problem.value == 2
     assert problem.allowed == "a whole number from 3 to 3000"
     assert str(problem).startswith("design.toml:11: pair.teeth[1]: 2 is out of range")
-    assert only(changed("teeth =", "shaft = 1\nteeth =")).hint == ""
+    assert only(changed("teeth =", "colour = 1\nteeth =")).hint == ""
 
 
 @pytest.mark.parametrize(

@@ -36,6 +36,9 @@ KEYS: dict[str, tuple[dict[str, Any], Any, Any]] = {
     "keyway_depth_mm": (KEYWAY, 1, 1.5),
     "keyway_angle_deg": (KEYWAY, 30, 60),
     "bore_flat_mm": (BORE, 7, 7.5),
+    "bore_across_flats_mm": (BORE, 6, 7),
+    "shaft": ({}, "NEMA 17", "28BYJ-48"),
+    "keyway": (BORE, "DIN 6885", "none"),
     "bolts": (BOLTS, 2, 3),
     "bolt_circle_mm": (BOLTS, 20, 22),
     "bolt_diameter_mm": (BOLTS, 2, 3),
@@ -64,7 +67,17 @@ KEYS: dict[str, tuple[dict[str, Any], Any, Any]] = {
     "bolt_height_mm": (ROW, 5, 6),
 }
 
+
+def _segment(radius: float, away: float) -> float:
+    """Return the area of a circle beyond a line at a distance from its centre."""
+    half = math.acos(away / radius)
+    return radius**2 * (half - math.sin(half) * math.cos(half))
+
+
 AREAS = {
+    "bore_across_flats_mm": 2 * (_segment(4, 3) - _segment(4, 3.5)),
+    "shaft": 2 * _segment(2.5, 1.5) - _segment(2.5, 2),
+    "keyway": 2 * 5 - (math.sqrt(15) + 16 * math.asin(0.25)),
     "bore_diameter_mm": math.pi / 4 * (9**2 - 8**2),
     "bolts": math.pi / 4 * 2**2,
     "bolt_diameter_mm": 2 * math.pi / 4 * (3**2 - 2**2),
@@ -77,7 +90,7 @@ COMMON = ("timing_marks", "mark_diameter_mm", "clearance_bores", "rotation_arrow
 
 OF_TEETH = {"stop_pin_mm", "timing_marks", "mark_diameter_mm", "tip_rounding_mm"}
 OF_PLATES = {"height_mm", "length_mm", "bolt_spacing_mm", "bolt_height_mm"}
-OF_SHAFT = {key for key in KEYS if key.startswith(("bore", "keyway", "hub", "set_screw"))}
+OF_SHAFT = {key for key in KEYS if key.startswith(("bore", "keyway", "hub", "set_screw", "shaft"))}
 OF_HOLES = {"lightening_holes", "rim_mm", "web_mm"}
 OF_BOLTS = {"bolts", "bolt_circle_mm", "bolt_diameter_mm", "bolt_angle_deg"}
 CLEAR = {"clearance_mm", "clearance_bores"}
@@ -147,7 +160,7 @@ def _blank(body: str, key: str, value: Any) -> dict[str, Any]:
         given["bolt_circle_mm"] += 74
     if wheel == 0:
         return {**document["blank"], **given}
-    none = {"density_kg_m3": 7850}
+    none = {"density_kg_m3": 7850, "shaft": "none", "keyway": "none"}
     return {
         one: size if one in COMMON else [size if k == wheel else none.get(one, 0) for k in (1, 2)]
         for one, size in given.items()

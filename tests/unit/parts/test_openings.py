@@ -82,6 +82,53 @@ def test_a_flat_is_measured_from_the_far_side(angle: float) -> None:
     assert shape.moments.area == pytest.approx(100 * math.pi - segment, rel=1e-12)
 
 
+@pytest.mark.parametrize("angle", [0.0, 0.7, -2.0])
+def test_two_flats_are_measured_across_and_turned(angle: float) -> None:
+    shape = bore(blank(bore_diameter=20.0, bore_across_flats=14.0, keyway_angle=angle))
+    assert isinstance(shape, Loop)
+    assert turned(shape, angle).bounds == pytest.approx((-7.0, -10.0, 7.0, 10.0), abs=2 * FINE)
+    half = math.acos(0.7)
+    segment = 100 * (half - math.sin(half) * math.cos(half))
+    assert shape.moments.area == pytest.approx(100 * math.pi - 2 * segment, rel=1e-12)
+    assert shape.moments.first == pytest.approx(0.0, abs=1e-12)
+    assert shape.reach == pytest.approx(10.0, rel=1e-14)
+    ends = shape.points * np.exp(-1j * angle)
+    assert ends.real == pytest.approx([7, 7, -7, -7])
+    assert (shape.bulges == 0.0).tolist() == [True, False, True, False]
+
+
+@pytest.mark.parametrize(
+    ("motor", "size"),
+    [
+        ("28BYJ-48", {"bore_diameter": 5.0, "bore_across_flats": 3.0}),
+        ("N20", {"bore_diameter": 3.0, "bore_flat": 2.5}),
+        ("TT", {"bore_diameter": 5.4, "bore_across_flats": 3.7}),
+        ("NEMA 17", {"bore_diameter": 5.0, "bore_flat": 4.5}),
+        ("NEMA 23", {"bore_diameter": 6.35, "bore_flat": 5.85}),
+    ],
+)
+def test_a_motor_has_the_bore_of_its_shaft(motor: str, size: dict[str, float]) -> None:
+    named, given = blank(shaft=motor, keyway_angle=0.4), blank(**size, keyway_angle=0.4)
+    assert named.bore == size["bore_diameter"]
+    assert named.bore_reach == 0.5 * named.bore
+    own, same = (bore(one).moments for one in (named, given))
+    assert (own.area, own.first) == (same.area, same.first)
+    wide = blank(shaft=motor, clearance=0.1, clearance_bores=True)
+    flat = wide.widened.bore_flat or wide.widened.bore_across_flats
+    assert flat == pytest.approx([*size.values()][1] + 0.2)
+    assert made(disc_contour(50.0), wide).openings[0].shape.moments.area > same.area
+
+
+def test_a_standard_keyway_is_that_of_the_bore() -> None:
+    named = blank(bore_diameter="25 H7", keyway="DIN 6885", keyway_angle=0.4)
+    assert (str(named.sized.keyway_width), named.sized.keyway_depth) == ("8 JS9", 3.3)
+    assert str(named.sized.bore_diameter) == "25 H7"
+    given = blank(bore_diameter=25.0, keyway_width=8.0, keyway_depth=3.3, keyway_angle=0.4)
+    assert bore(named).moments == bore(given).moments
+    assert named.bore_reach == given.bore_reach
+    assert given.sized is given
+
+
 def test_bolts_stand_on_their_circle() -> None:
     sizes = blank(bolts=5, bolt_circle=60.0, bolt_diameter=6.6, bolt_angle=0.3)
     found = made(disc_contour(50.0), sizes).openings

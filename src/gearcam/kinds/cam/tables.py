@@ -68,7 +68,7 @@ class CamBlank(WheelBlank):
     mark_diameter: float | None = fixed(None)
     tip_rounding: float = fixed(0.0)
 
-    rules = (*OPENING_RULES, *widening_rules("bore_diameter", "bolts"))
+    rules = (*OPENING_RULES, *widening_rules("bore_diameter", "shaft", "bolts"))
 
 
 @dataclass(frozen=True, kw_only=True)

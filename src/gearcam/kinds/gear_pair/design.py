@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, fields
 from typing import Any, Final, TypeGuard
 
 from gearcam.base.brought import group_of
-from gearcam.base.quantities import COUNT, param
+from gearcam.base.quantities import COUNT, NONE, param
 from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.base.rules import Breach, Rule, Values, at_most, only_with
 from gearcam.designs.design import Design
@@ -46,7 +46,7 @@ NAME: Final = "gear-pair"
 
 _HERE: Final = "gearcam.kinds.gear_pair"
 
-_OF_SHAFT: Final = ("bore_diameter", "hub_diameter", "lightening_holes", "stop_pin")
+_OF_SHAFT: Final = ("bore_diameter", "shaft", "hub_diameter", "lightening_holes", "stop_pin")
 """What a ring does not have."""
 
 _OF_HOLES: Final = (*_OF_SHAFT, "bolts")
@@ -299,14 +299,16 @@ def _unmade(raw: Any, names: Collection[str], why: str, rest: str = "") -> Itera
         value = raw.get(entry.key)
         own = value if isinstance(value, list) and len(value) == 2 else [value, value]
         served = entry.name in serving(names) and own[0] != own[1]
-        if not _is_number(own[1]) or not own[1] or not (entry.name in names or served):
+        none = show(NONE) if entry.base is str else "0"
+        wanted = isinstance(own[1], str) or (_is_number(own[1]) and own[1])
+        if not wanted or own[1] == NONE or not (entry.name in names or served):
             continue
         if isinstance(value, list):
-            message, rule = f"{show(own[1])}: wheel 2 {why}", f"0 for wheel 2{rest}"
+            message, rule = f"{show(own[1])}: wheel 2 {why}", f"{none} for wheel 2{rest}"
             yield Fault(("blank", entry.key, 1), message, own[1], rule)
         else:
             message = f"{show(value)}: it holds for both wheels, but wheel 2 {why}"
-            yield Fault(("blank", entry.key), message, value, f"[{show(value)}, 0]{rest}")
+            yield Fault(("blank", entry.key), message, value, f"[{show(value)}, {none}]{rest}")
 
 
 def _is_number(value: Any) -> TypeGuard[float]:

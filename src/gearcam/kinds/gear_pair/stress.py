@@ -218,7 +218,7 @@ def _stressed(
     edge_share = np.zeros(len(entries.phi1))
     np.add.at(edge_share, entries.step, np.where(entries.edge, entries.share, 0.0))
     blanks = (pair.result.design.blank.wheel(gear.wheel) for gear in _on_shafts(pair))
-    unheld = not (pair.spec.held_diameter or all(one.bore_diameter for one in blanks))
+    unheld = not (pair.spec.held_diameter or all(one.bore for one in blanks))
     loaded = np.abs(pair.under.without_friction(even)) > 0.0
     unstated = loaded & ~np.isin(even, entries.phi1)
     return StressedPair(
