@@ -12,6 +12,7 @@ import pytest
 import gearcam as gc
 from gearcam.designs.schema import schema
 from gearcam.designs.writing import least_document, toml_text
+from gearcam.parts.blank import WheelBlank
 from gearcam.view.numbers import numbers, replaced
 from helpers_files import problems
 from helpers_pairs import PROFILES
@@ -70,7 +71,7 @@ def test_each_wheel_may_have_its_own() -> None:
 @pytest.mark.parametrize("given", ["25 H7", gc.FitSize("25 H7")])
 def test_python_takes_texts_and_sizes(given: Any) -> None:
     for blank in (
-        gc.WheelBlank(bore_diameter=given),
+        WheelBlank(bore_diameter=given),
         gc.Blank(bore_diameter=(given, 16.0)).wheel(1),
     ):
         assert repr(blank) == "WheelBlank(bore_diameter='25 H7')"
