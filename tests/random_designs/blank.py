@@ -82,12 +82,12 @@ def _bore(d: Draw, bore: float, made: dict[str, Any]) -> float:
         angle = d.even(-180, 180)
         made |= {"keyway_width_mm": width, "keyway_depth_mm": depth, "keyway_angle_deg": angle}
         return 2.0 * math.hypot(0.5 * bore + depth, 0.5 * width)
-    if (key := keyway_of(bore)) and d.chance(0.1):
+    if (key := keyway_of(bore)) and d.chance(0.25):
         made["keyway"] = "DIN 6885"
         return 2.0 * math.hypot(0.5 * bore + key.hub_depth, 0.5 * key.width)
     if d.chance(0.2):
         made["bore_flat_mm"] = short(bore * d.even(0.6, 0.95))
-    elif d.chance(0.1):
+    elif d.chance(0.25):
         made["bore_across_flats_mm"] = short(bore * d.even(0.3, 0.95))
     return bore
 

@@ -233,7 +233,7 @@ def _split(hint: Any) -> tuple[Any, str]:
 
 
 def settled(part: Any) -> Any:
-    """Return input with tuples for lists and arrays, Python numbers, and sizes for their texts.
+    """Return input with tuples instead of lists and arrays, and Python numbers.
 
     Parameters
     ----------
@@ -255,7 +255,5 @@ def settled(part: Any) -> Any:
         return part
     given = {item.name: getattr(part, item.name) for item in dataclasses.fields(part)}
     values = {name: settled(value) for name, value in given.items()}
-    fits = [name for name, one in params_of(type(part)).items() if one.fit]
-    values |= {name: fitted(values[name]) for name in fits}
     changed = {name: value for name, value in values.items() if value is not given[name]}
     return replace(part, **changed) if changed else part

@@ -376,7 +376,7 @@ class WheelBlank(ShaftBlank):
 
 
 @dataclass(frozen=True, kw_only=True)
-class RowBlank(ShortRepr):
+class RowBlank(ShortRepr, Fitted):
     """A row of mounting holes in what slides."""
 
     bolts: int = _count(doc="number of mounting holes in a row", le=100)

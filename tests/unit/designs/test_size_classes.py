@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import dataclasses
 import pickle
 from typing import Any
 
@@ -79,15 +80,9 @@ def test_python_takes_texts_and_sizes(given: Any) -> None:
     cam = cam_with(given)
     assert str(cam.blank.bore) == "25 H7"
     assert cam.to_dict()["blank"]["bore_diameter_mm"] == "25 H7"
-    cylinder = gc.load(PROFILES / "cylinder_cam.toml")
-    made = type(cylinder)(
-        name="c",
-        motion=cylinder.motion,
-        follower=cylinder.follower,
-        cam=cylinder.cam,
-        blank=gc.CylinderBlank(bore_diameter=given),
-    )
-    assert str(made.blank.bore_diameter) == "25 H7"
+    cylinder: Any = gc.load(PROFILES / "cylinder_cam.toml")
+    own = dataclasses.replace(cylinder, blank=gc.CylinderBlank(bore_diameter=given))
+    assert str(own.blank.bore_diameter) == "25 H7"
 
 
 @pytest.mark.parametrize(
@@ -152,7 +147,27 @@ def test_a_remedy_keeps_the_class() -> None:
     (remedy,) = gc.remedies(gc.build(design)).found
     assert remedy.text.startswith('blank.bore_diameter_mm = "6')
     assert remedy.text.endswith(' H7"')
-    assert str(remedy.design.blank.wheel(2).bore).endswith("H7")
+    changed: Any = remedy.design
+    assert str(changed.blank.wheel(2).bore).endswith("H7")
+
+
+def test_a_class_where_there_is_none_is_refused() -> None:
+    size = gc.FitSize("40 H7")
+    blank = {"blank.bore_diameter_mm": 20, "blank.hub_front_mm": 3, "blank.hub_diameter_mm": size}
+    with pytest.raises(gc.DesignError, match="the fit H7 has no key"):
+        cam_with(20).with_(blank)
+    with pytest.raises(gc.DesignError, match="the fit H7 has no key"):
+        dataclasses.replace(
+            cam_with(20), blank=gc.CamBlank(bore_diameter=20, hub_diameter=size, hub_front=3)
+        )
+
+
+def test_plates_have_them_too() -> None:
+    blank = gc.PlateBlank(height=60.0, bolts=1, bolt_diameter="6 H8", bolt_height=9.0)  # pyright: ignore
+    given: Any = gc.load(PROFILES / "translating_cam.toml")
+    plate = dataclasses.replace(given, blank=blank)
+    assert str(plate.blank.bolt_diameter) == "6 H8"
+    assert plate.to_dict()["blank"]["bolt_diameter_mm"] == "6 H8"
 
 
 def test_parts_have_the_nominal_size() -> None:
