@@ -380,7 +380,7 @@ class RowBlank(ShortRepr, Fitted):
     """A row of mounting holes in what slides."""
 
     bolts: int = _count(doc="number of mounting holes in a row", le=100)
-    bolt_diameter: float = _length(doc="diameter of each mounting hole")
+    bolt_diameter: float = _length(doc="diameter of each mounting hole", fit=True)
     bolt_spacing: float | None = positive_length(
         example=60, doc="distance of the holes in the row, centred on the length"
     )
