@@ -132,8 +132,8 @@ class FitSize(float):
         made.lower, made.upper = low / 1000.0, high / 1000.0
         return made
 
-    def __getnewargs__(self) -> tuple[str]:
-        return (str(self),)
+    def __reduce__(self) -> tuple[type[Self], tuple[str]]:
+        return type(self), (str(self),)
 
     def __str__(self) -> str:
         number = float.__repr__(self)
