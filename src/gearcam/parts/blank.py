@@ -310,7 +310,7 @@ class ShaftBlank(ShortRepr, Fitted):
         if self.set_screw and self.set_screw not in TAPPED:
             sizes = ", ".join(formatted(size) for size in TAPPED)
             yield "set_screw", None, "there is no coarse thread of this diameter", sizes
-        if self.bore and TAPPED.get(self.set_screw, 0.0) >= self.bore:
+        if 0.0 < self.bore <= TAPPED.get(self.set_screw, 0.0):
             rule = f"a tapping drill below the bore's {formatted(self.bore)} mm"
             yield "set_screw", None, "the hole of the screw is as wide as the bore", rule
 
