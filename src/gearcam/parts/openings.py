@@ -31,6 +31,7 @@ from gearcam.numeric.contour import Contour
 from gearcam.numeric.polygons import room_around
 from gearcam.parts.blank import RowBlank, ShaftBlank, serving
 from gearcam.parts.body import Edge, Opening
+from gearcam.parts.fits import FitSize
 from gearcam.parts.shapes import Circle, Loop
 
 if TYPE_CHECKING:
@@ -230,7 +231,13 @@ def _bolts(blank: ShaftBlank) -> Iterator[Opening]:
         angle = blank.bolt_angle + 2.0 * math.pi * number / blank.bolts
         center = cmath.rect(0.5 * blank.bolt_circle, angle)
         shape = Circle(center=center, diameter=blank.bolt_diameter)
-        yield Opening(kind="HOLE", shape=shape, name=f"bolt hole {number + 1}")
+        fits = fits_of(diameter=blank.bolt_diameter)
+        yield Opening(kind="HOLE", shape=shape, name=f"bolt hole {number + 1}", fits=fits)
+
+
+def fits_of(**sizes: float | None) -> dict[str, FitSize]:
+    """Return those of some sizes that have tolerance classes, by their names."""
+    return {name: size for name, size in sizes.items() if isinstance(size, FitSize)}
 
 
 def row_of_holes(row: RowBlank, foot: complex, along: complex, up: complex) -> Iterator[Opening]:
@@ -249,7 +256,8 @@ def row_of_holes(row: RowBlank, foot: complex, along: complex, up: complex) -> I
         aside = (number - 0.5 * (row.bolts - 1)) * (row.bolt_spacing or 0.0)
         center = foot + aside * along + (row.bolt_height or 0.0) * up
         shape = Circle(center=center, diameter=row.bolt_diameter)
-        yield Opening(kind="HOLE", shape=shape, name=f"bolt hole {number + 1}")
+        fits = fits_of(diameter=row.bolt_diameter)
+        yield Opening(kind="HOLE", shape=shape, name=f"bolt hole {number + 1}", fits=fits)
 
 
 def openings(
@@ -280,7 +288,10 @@ def openings(
     """
     stock = Stock(contours=contours, work=work, inner=inner)
     wide = blank.widened
-    made = [Opening(kind="BORE", shape=bore(wide), name="bore")] if blank.bore else []
+    made, own = [], blank.sized
+    if blank.bore:
+        fits = fits_of(diameter=own.bore_diameter, keyway=own.keyway_width)
+        made = [Opening(kind="BORE", shape=bore(wide), name="bore", fits=fits)]
     made += _bolts(wide)
     if blank.stop_pin:
         chord = max((one.tolerance for one in contours if isinstance(one, Contour)), default=0.0)
