@@ -142,11 +142,6 @@ class FitSize(float):
     def __repr__(self) -> str:
         return f"{type(self).__name__}({str(self)!r})"
 
-    @property
-    def of_hole(self) -> bool:
-        """Whether its class is that of a hole."""
-        return self.tolerance_class[0].isupper()
-
 
 class Fitted:
     """Base of dataclasses: their sizes may be given as a text such as ``25 H7``."""
