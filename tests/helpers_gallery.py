@@ -318,6 +318,12 @@ NUMBERS: dict[str, dict[str, Number]] = {
         "pair.travel_per_turn_mm": (lambda: 2 * math.pi * feeder_scale(), 1e-9),
         "pair.radius_mm.max": (lambda: 1.2 * feeder_scale(), 1e-10),
     },
+    "gate_rack": {
+        "pair.travel_per_turn_mm": (2 * math.pi * 20, 1e-9),
+        # whole teeth: 40 pitches long, the height of the bar
+        "gears[1].size_mm[1]": (40 * 2 * math.pi, 1e-9),
+        "gears[1].size_mm[0]": (20.0, 1e-9),
+    },
     "loaded_nail_machine": {
         "pair.module_mm": (4.9229880875, 1e-10),
         "gears[0].centrode.length_mm": (556.7768355399, 1e-10),
@@ -502,6 +508,14 @@ CAM_NUMBERS: dict[str, dict[str, Number]] = {
         "cam.pressure_angle_deg.max": (DEG * math.atan(2 * 12 / math.radians(160) / 15), 1e-9),
         # a pass of 5.5/4 mm above the floor: the tool 3 mm in the groove of 4.025 mm
         "tool_path.rest_mm": (lambda: _left_by_mill(14.5, 14.5 + 5.5 / 4, 4.025, 3.0), 1e-7),
+    },
+    "ordered_drum": {
+        # modified sine, over the inner end of the roller at 36 mm
+        "cam.pressure_angle_deg.max": (
+            DEG * math.atan(24 / math.radians(130) * MODIFIED_SINE / 36),
+            1e-9,
+        ),
+        "cam.groove_width_mm.floor": (2 * 8.015, 1e-12),
     },
     "globoidal_indexer": {
         # modified sine: 4*pi/(4 + pi) of the mean rate of 45 deg in 120 deg, at the middle of the
