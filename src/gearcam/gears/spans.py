@@ -1,0 +1,342 @@
+"""Spans over teeth: the places at which two flanks of a wheel have a common normal.
+
+Flat jaws touch the sigma = -1 flank of the first tooth at the roll b, and the sigma = +1 flank of
+the last at the roll a. Their reading is steady where both flanks have one normal: the chord of the
+centrode from P(b) to P(a) stands under alpha at both ends,
+
+    n = T(a)*(cos(alpha) + sin(alpha)*turn) = T(b)*(cos(alpha) - sin(alpha)*turn),
+
+along the chord. That does not depend on the teeth, which give the reading ``W = chord +
+cos(alpha)*(w_a + w_b)`` with the reach of both contacts. If the jaws rock by a small angle x it
+changes by ``0.5*x^2*(sin(alpha)*(1/kappa_a + 1/kappa_b) - chord)``. Along arcs of circles every
+place is one; elsewhere there are few: an ellipse has four, across its axes.
+
+Depends on outline.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from gearcam.gears.flank import Toothing
+from gearcam.gears.outline import Outline
+from gearcam.gears.pins import SIDES
+from gearcam.gears.track import Frames
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
+
+_CELLS: Final = 1024
+"""Cells of a centrode in the search, of equal shares of its length and its turning together."""
+
+_SLACK: Final = 1.5
+"""Factor on how far the conditions may change within a cell."""
+
+_STEPS: Final = 25
+"""Steps of Newton's method; six suffice."""
+
+_NEAR: Final = 4.0
+"""Distance from the middle of its cell at which a root is of another one, in cells."""
+
+_EXACT: Final = 1e-10
+"""Largest error of a root, rad, and of lengths over that of the centrode."""
+
+_APART: Final = 1e-7
+"""Distance of two places, over the length of the centrode, from which they are two."""
+
+_MORE: Final = np.arange(-6, 7)
+"""Teeth more than those that are touched at the middle of their flanks: all possible ones."""
+
+_TOUCH: Final = 1e-9
+"""Share of a reading by which other teeth may reach beyond the jaws: rounding."""
+
+_JAW: Final = 0.25
+"""Thickness of a jaw, and depth below the contact that it does not need, in modules."""
+
+_ROUND: Final = 1e-9
+"""Relative change of the curvature from cell to cell on an arc of a circle: rounding."""
+
+
+class Spans(NamedTuple):
+    """Steady readings of flat jaws over teeth, (n,) arrays; of each place the best teeth first.
+
+    Parameters
+    ----------
+    first, last : int arrays
+        Numbers of the teeth whose flanks are touched.
+    teeth : int array
+        How many teeth are between the jaws.
+    reading : array, mm
+        The distance of the jaws.
+    contact : (2, n) complex array, mm
+        Points of contact of the first and the last tooth.
+    rocked : array, mm/rad^2
+        Change of the reading by the square of a small angle by which the jaws rock: it is least
+        where this is positive, largest where negative.
+    off : array
+        Distance of the contacts from the middle of their flanks, 0 to 1.
+    place : int array
+        Number of the place on the centrode; -1 on arcs of circles.
+    """
+
+    first: Ints
+    last: Ints
+    teeth: Ints
+    reading: Array
+    contact: Plane
+    rocked: Array
+    off: Array
+    place: Ints
+
+
+def find_spans(outline: Outline) -> Spans:
+    """Return the steady readings over two or more teeth of a wheel; of racks and rings none.
+
+    Parameters
+    ----------
+    outline : Outline
+        The teeth as made.
+    """
+    toothing = outline.toothing
+    z, flanks = len(toothing.numbers), outline.flanks
+    whole = np.arange(z)[toothing.whole]
+    none = np.empty(0, dtype=np.int64)
+    if toothing.track.slides or toothing.track.ring:
+        return _spans(outline, none, none, np.empty((2, 0)), none)
+    cells = _Cells.of(toothing)
+    places = _isolated(toothing, cells)
+    ahead = _within(toothing, flanks.sf[whole, None] - places[0])
+    behind = _within(toothing, places[1] - flanks.sf[z + whole, None])
+    touched_last, touched_first = (
+        (flanks.lowest[at, None] <= reach) & (reach <= flanks.highest[at, None])
+        for at, reach in ((whole, ahead), (z + whole, behind))
+    )
+    last, first, place = np.nonzero(touched_last[:, None] & touched_first)
+    on_arcs = _on_arcs(outline, cells, whole)
+    return _spans(
+        outline,
+        np.append(whole[first], on_arcs[0]),
+        np.append(whole[last], on_arcs[1]),
+        np.append(places[:, place], on_arcs[2], axis=1),
+        np.append(place, np.full(len(on_arcs[0]), -1)),
+    )
+
+
+def _on_arcs(outline: Outline, cells: _Cells, whole: Ints) -> tuple[Ints, Ints, Array]:
+    """Return first and last teeth, and rolls a and b, mm, of all readings on arcs of circles."""
+    toothing, flanks, z = outline.toothing, outline.flanks, len(outline.toothing.numbers)
+    found: dict[tuple[int, int], tuple[float, float]] = {}
+    first = np.repeat(whole, len(_MORE))
+    low, high, sf = (one[z + first] for one in (flanks.lowest, flanks.highest, flanks.sf))
+    for start, stop, kappa in cells.arcs(toothing.cutter.alpha):
+        between = 2.0 * toothing.cutter.alpha / kappa
+        # of whole pitches, so many that both contacts are near the middle of their flanks
+        steps = np.rint((low + high - 2.0 * toothing.half_tooth + between) / toothing.pitch)
+        steps += np.tile(_MORE, len(whole))
+        reach = 0.5 * (steps * toothing.pitch - between) + toothing.half_tooth
+        last, b = first + steps.astype(np.int64), sf + reach
+        if toothing.closed:
+            last, b = last % z, start + (b - start) % toothing.length
+        there = (steps > 0.0) & (steps < len(whole)) & np.isin(last, whole)
+        there &= (start <= b) & (b + between <= stop) & (low <= reach) & (reach <= high)
+        far = last[there]
+        there[there] = (flanks.lowest[far] <= reach[there]) & (reach[there] <= flanks.highest[far])
+        teeth = zip(first[there].tolist(), last[there].tolist(), strict=True)
+        found |= {pair: (roll + between, roll) for pair, roll in zip(teeth, b[there], strict=True)}
+    pairs = np.array([*found], dtype=np.int64).reshape(-1, 2)
+    return pairs[:, 0], pairs[:, 1], np.array([*found.values()]).reshape(-1, 2).T
+
+
+def _spans(outline: Outline, first: Ints, last: Ints, rolls: Array, place: Ints) -> Spans:
+    """Return the readings at common normals, without those at which jaws would meet other teeth."""
+    toothing, flanks, z = outline.toothing, outline.flanks, len(outline.toothing.numbers)
+    cosine = math.cos(toothing.cutter.alpha)
+    frames = toothing.frames(toothing.track.angle(rolls))
+    flank = np.stack([last, z + first])
+    reach = SIDES * _within(toothing, flanks.sf[flank] - rolls)
+    contact = toothing.flank_points(frames, rolls + SIDES * reach, SIDES)
+    normal = toothing.normals(frames, SIDES)[0]
+    chord = np.abs(frames.p[0] - frames.p[1])
+    reading = chord + cosine * reach.sum(axis=0)
+    with np.errstate(divide="ignore"):
+        rocked = 0.5 * (math.sin(toothing.cutter.alpha) * (1.0 / frames.kappa).sum(axis=0) - chord)
+    rocked = np.where(place < 0, 0.0, rocked)
+    low, high = _ends(outline)
+    under, over = np.abs(contact - low[flank]), np.abs(contact - high[flank])
+    off = np.abs((under - over) / (under + over)).max(axis=0)
+    teeth = (last - first) % z + 1
+    kept = (teeth > 1) & (frames.kappa > 0.0).all(axis=0)
+    for row in np.flatnonzero(kept & (place >= 0)):
+        of = np.arange(first[row], first[row] + teeth[row]) % z
+        tips = high[np.append(of, z + of)]
+        kept[row] = _free(outline, contact[:, row], normal[row], tips)
+    order = np.flatnonzero(kept)
+    order = order[np.lexsort((off[order], place[order]))]
+    number = np.array(toothing.numbers)
+    return Spans(
+        number[first[order]],
+        number[last[order]],
+        teeth[order],
+        reading[order],
+        contact[:, order],
+        rocked[order],
+        off[order],
+        place[order],
+    )
+
+
+def _ends(outline: Outline) -> tuple[Plane, Plane]:
+    """Return the lower and the upper ends of all flanks, mm."""
+    toothing, flanks = outline.toothing, outline.flanks
+    sf, sigma = flanks.sf, flanks.sigma
+    low, high = (
+        toothing.flank_points(toothing.frames(toothing.track.angle(sf - sigma * w)), sf, sigma)
+        for w in (flanks.lowest, flanks.highest)
+    )
+    return low, high
+
+
+def _free(outline: Outline, contact: Plane, normal: complex, tips: Plane) -> bool:
+    """Return whether thin jaws reach two points of contact, and the `tips` are between them."""
+    toothing = outline.toothing
+    last, first = contact
+    along = (np.conj(normal) * (tips - first)).real
+    size = abs(last - first)
+    if along.min() < -_TOUCH * size or along.max() > size * (1.0 + _TOUCH):
+        return False
+    least, thick = outline.chord_error, _JAW * toothing.pitch / math.pi
+    for place, outwards in ((last, normal), (first, -normal)):
+        aside = (np.conj(outwards) * (outline.points - place)).real
+        above = (np.conj(toothing.turn * normal) * (outline.points - place)).real
+        if ((aside > least) & (aside < thick) & (above > thick)).any():
+            return False
+    return True
+
+
+class _Cells(NamedTuple):
+    """Stretches of a centrode over one turn, of a closed wheel over two.
+
+    Parameters
+    ----------
+    ends : (n + 1,) array, mm
+        Arc lengths at their ends.
+    middle : Frames
+        Frames at their middles, (n,).
+    turned : (n,) array, rad
+        Directions of the tangents there, rising where convex.
+    turning : (n,) array, rad
+        Change of these within a cell.
+    arc : (n,) int array
+        Numbers of stretches of constant curvature.
+    once : int
+        Number of cells in a turn.
+    """
+
+    ends: Array
+    middle: Frames
+    turned: Array
+    turning: Array
+    arc: Ints
+    once: int
+
+    def arcs(self, alpha: float) -> Iterator[tuple[float, float, float]]:
+        """Yield start and end, mm, and curvature of arcs that are long enough for jaws."""
+        for arc in range(int(self.arc[self.once - 1]) + 1):
+            at = np.flatnonzero(self.arc == arc)
+            start, stop = float(self.ends[at[0]]), float(self.ends[at[-1] + 1])
+            kappa = float(self.middle.kappa[at[0]])
+            if kappa * (stop - start) >= 2.0 * alpha:
+                yield start, stop, kappa
+
+    @classmethod
+    def of(cls, toothing: Toothing) -> _Cells:
+        """Return the cells of a `toothing`."""
+        track = toothing.track.exact
+        low, high = track.angle(np.array([0.0, toothing.length]))
+        fine = np.linspace(low, high, 4 * _CELLS + 1)
+        frames = track.frames(fine, curved=False)
+        turning = np.abs(np.angle(frames.t[1:] / frames.t[:-1]))
+        share = (frames.s - frames.s[0]) / toothing.length
+        share[1:] += np.cumsum(turning) / max(turning.sum(), _EXACT)
+        phi = np.interp(np.linspace(0.0, share[-1], _CELLS + 1), share, fine)
+        phi = np.sort(np.append(phi, track.knots_between(np.array([low]), np.array([high]))[1]))
+        once = len(phi) - 1
+        if toothing.closed:
+            phi = np.append(phi, phi[1:] + track.around)
+        middle = track.frames(0.5 * (phi[1:] + phi[:-1]))
+        tangents = track.frames(phi, curved=False).t
+        sense = -toothing.turn.imag
+        steps = sense * np.angle(middle.t[1:] / middle.t[:-1])
+        change = np.abs(np.diff(middle.kappa)) > _ROUND * np.abs(middle.kappa).max()
+        return cls(
+            track.arc_length(phi),
+            middle,
+            np.append(0.0, np.cumsum(steps)),
+            np.abs(np.angle(tangents[1:] / tangents[:-1])),
+            np.append(0, np.cumsum(change)),
+            once,
+        )
+
+
+def _within(toothing: Toothing, distance: Array) -> Array:
+    """Return distances along a closed centrode by the shorter way."""
+    turn, half = toothing.length, 0.5 * toothing.length
+    return (distance + half) % turn - half if toothing.closed else distance
+
+
+def _isolated(toothing: Toothing, cells: _Cells) -> Array:
+    """Return the rolls a and b, mm, of all places that are not on one arc of a circle, (2, n)."""
+    alpha, length = toothing.cutter.alpha, toothing.length
+    place, middle, once = cells.middle.p, cells.middle, cells.once
+    normal = middle.t * (math.cos(alpha) - math.sin(alpha) * toothing.turn)
+    size = np.diff(cells.ends)
+    i, j = np.nonzero(
+        np.abs(cells.turned[:, None] - cells.turned[:once] - 2.0 * alpha)
+        <= 0.5 * _SLACK * (cells.turning[:, None] + cells.turning[:once])
+    )
+    apart, chord = middle.s[i] - middle.s[j], place[i] - place[j]
+    limit = 0.5 * _SLACK * (size[i] + size[j] + np.abs(chord) * cells.turning[j])
+    near = np.abs((np.conj(normal[j]) * chord).imag) <= limit
+    near &= (apart > 0.0) & (apart < (0.5 if toothing.closed else 1.0) * length)
+    near &= cells.arc[i] != cells.arc[j]
+    first = middle.s[np.stack([i[near], j[near]])]
+    rolls, exact = _common_normals(toothing, first, size[np.stack([i[near], j[near]])])
+    rolls = rolls[
+        :, exact & (np.abs(rolls - first) <= _NEAR * size[[i[near], j[near]]]).all(axis=0)
+    ]
+    close = _APART * length
+    for start, stop, _ in cells.arcs(alpha):
+        b = (rolls[1] - start + close) % length if toothing.closed else rolls[1] - start + close
+        rolls = rolls[:, (b < 0.0) | (b + rolls[0] - rolls[1] > stop - start + 2.0 * close)]
+    kept: list[int] = []
+    for k, roll in enumerate(rolls.T):
+        away = np.abs(_within(toothing, rolls[:, kept] - roll[:, None])).max(axis=0)
+        if not (away < close).any():
+            kept.append(k)
+    return rolls[:, kept]
+
+
+def _common_normals(toothing: Toothing, rolls: Array, longest: Array) -> tuple[Array, Mask]:
+    """Return rolls (2, n), mm, of common normals, by Newton steps, and whether they are exact."""
+    track, alpha, sense = toothing.track.exact, toothing.cutter.alpha, -toothing.turn.imag
+    lean = math.sin(alpha) * toothing.turn
+
+    def conditions(rolls: Array) -> tuple[Frames, Plane, Array, Plane]:
+        frames = track.frames(track.angle(rolls))
+        normal = frames.t[1] * (math.cos(alpha) - lean)
+        angle = sense * np.angle(frames.t[0] * (math.cos(alpha) + lean) / normal)
+        return frames, normal, angle, np.conj(normal) * (frames.p[0] - frames.p[1])
+
+    for _ in range(_STEPS):
+        frames, normal, angle, chord = conditions(rolls)
+        aside, along = chord.imag, (np.conj(normal) * frames.t).imag
+        (p, q), r = frames.kappa * SIDES, along[0]
+        u = -along[1] - sense * frames.kappa[1] * chord.real
+        with np.errstate(divide="ignore", invalid="ignore"):
+            move = np.stack([q * aside - u * angle, r * angle - p * aside]) / (p * u - q * r)
+        rolls = rolls + np.where(np.isfinite(move), np.clip(move, -longest, longest), 0.0)
+    _, _, angle, chord = conditions(rolls)
+    exact = (np.abs(angle) <= _EXACT) & (np.abs(chord.imag) <= _EXACT * toothing.length)
+    return rolls, exact & (chord.real > 0.0)
