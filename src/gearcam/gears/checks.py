@@ -458,6 +458,32 @@ def short_flank(subject: CheckedPair, limit: float) -> Iterator[Remark]:
             )
 
 
+@pair_check("measuring-pin", severity="note")
+def measuring_pin(subject: CheckedPair, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Note a pin that is no simple size, or with which not all tooth spaces can be measured.
+
+    Only where something is measured: with the files ``inspection`` or those of drawings, or a pin
+    in the design.
+
+    Looks at: whether the pin touches both flanks, stands out of the tips and clears the root.
+    """
+    for gear, asked in zip(subject.gears, subject.pins or (), strict=False):
+        measuring = gear.measuring
+        diameter, pins = measuring.pins(asked)
+        size, where = readable(diameter, "mm"), f"wheel {gear.wheel}"
+        if asked is None and diameter != round(diameter, 2):
+            text = "No pin of a simple size touches all flanks near their middle; this one is "
+            yield Remark(f"{text}{size} thick. output.pin_diameter_mm sets another.", where)
+        missed = ~pins.measured
+        if missed.any():
+            spaces = tooth_ranges(measuring.numbers[: len(missed)][missed].tolist())
+            text = (
+                f"A pin of {size} cannot be measured in the spaces after these teeth: it does not "
+            )
+            text += "touch both flanks, does not stand out of the tips, or meets the root."
+            yield Remark(text, f"{where}, teeth {spaces}")
+
+
 @pair_check(
     "tips-collide",
     limit=("tip_pass", Param(LENGTH, ge=0, doc="least margin by which tips pass each other"), 0.0),

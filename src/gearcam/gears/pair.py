@@ -19,6 +19,7 @@ from gearcam.base.numerals import formatted
 from gearcam.base.tolerances import Tolerances
 from gearcam.gears.cutter import choose_cutter, ring_pinions
 from gearcam.gears.flank import Toothing
+from gearcam.gears.measuring import Measuring
 from gearcam.gears.outline import Outline, build_outline
 from gearcam.gears.rack_limits import (
     demand_clearance,
@@ -186,6 +187,11 @@ class Gear(ShortRepr, NotebookView):
     def flanks(self) -> Columns:
         """Points on the finished flanks, `FLANK_POINTS` on each (see `flank_points`)."""
         return self.flank_points(FLANK_POINTS)
+
+    @cached_property
+    def measuring(self) -> Measuring:
+        """What a shop measures on its teeth."""
+        return Measuring(wheel=self.wheel, outline=self.profile)
 
     def flank_points(self, count: int) -> Columns:
         """Return points on the exact finished flanks of all whole teeth.

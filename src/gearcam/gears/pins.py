@@ -201,19 +201,24 @@ class PinMeasures(ShortRepr):
 
     def pins(self, diameter: float) -> Pins:
         """Return the pins of a `diameter`, mm, in all spaces."""
-        toothing, count = self.toothing, self.spaces.sf.shape[1]
         thin, thick = self.thinnest, self.thickest
         at = np.flatnonzero((thin.diameter <= diameter) & (diameter <= thick.diameter))
+        places = np.full((3, len(thin.diameter)), complex(np.nan, np.nan))
+        if at.size:
+            self._place(diameter, at, places)
+        with np.errstate(invalid="ignore"):
+            return self._measured(places[0], places[1:], 0.5 * diameter)
+
+    def _place(self, diameter: float, at: Ints, places: Plane) -> None:
+        """Enter centres and both contacts of pins in the spaces `at` into rows of `places`."""
+        toothing, thin, thick = self.toothing, self.thinnest, self.thickest
         sf, sigma = self.spaces.sf[:, at], np.repeat(SIDES, len(at), axis=1)
         moved = sf + sigma * 0.5 * diameter / math.cos(toothing.cutter.alpha)
         ends = (toothing.track.angle(sf - sigma * one.reach[:, at]) for one in (thin, thick))
         phi, met = flank_crossings(toothing, moved, sigma, *ends)
         frames = toothing.frames(phi)
-        places = np.full((3, count), complex(np.nan, np.nan))
         places[0, at[met]] = toothing.flank_points(frames, moved, sigma)[0, met]
         places[1:, at[met]] = toothing.flank_points(frames, sf, sigma)[:, met]
-        with np.errstate(invalid="ignore"):
-            return self._measured(places[0], places[1:], 0.5 * diameter)
 
     def _measured(self, center: Plane, contact: Plane, radius: float) -> Pins:
         """Return pins with their distances from roots and tips, and what is measured over them."""
@@ -224,8 +229,7 @@ class PinMeasures(ShortRepr):
         out = self._stands_out(center, normal, around) + radius
         there, over, opposite = (gap > 0.0) & (out > 0.0), np.full(center.shape, np.nan), around
         if toothing.track.slides:
-            back = (np.conj(normal[0]) * self.outline.points).real.min()
-            over = (np.conj(normal) * center).real + radius - back
+            over = self.outline.points.real.max() - center.real + radius
         elif toothing.closed:
             opposite = (around + len(center) // 2) % len(center)
             inwards = -1.0 if toothing.track.ring else 1.0

@@ -45,6 +45,8 @@ class CheckedPair(ShortRepr):
         Least metal outside the roots of a ring.
     across : bool
         Whether the design gives the diameter of its outside, not the metal.
+    pins : two float or None, optional, mm
+        Pins with which both wheels are measured, if they are: None for the recommended one.
     """
 
     pair: GearPair
@@ -52,6 +54,7 @@ class CheckedPair(ShortRepr):
     bores: tuple[float | None, float | None]
     rim: float | None = None
     across: bool = False
+    pins: tuple[float | None, float | None] | None = None
 
     @property
     def rims(self) -> list[tuple[float, Gear]]:

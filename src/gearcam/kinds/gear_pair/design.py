@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, fields
 from typing import Any, Final, TypeGuard
 
 from gearcam.base.brought import group_of
-from gearcam.base.quantities import COUNT, NONE, param
+from gearcam.base.quantities import COUNT, LENGTH, LONGEST, NONE, param
 from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.base.rules import Breach, Rule, Values, at_most, only_with
 from gearcam.designs.design import Design
@@ -77,6 +77,16 @@ class PairOutputSpec(OutputSpec):
     pose: float = pose_param("phi1", "driver angle of the assembly drawing")
     inspection_points: int = param(
         COUNT, default=9, ge=2, le=1000, doc="number of points on each flank in inspection.csv"
+    )
+    pin_diameter: tuple[float, float] | None = param(
+        LENGTH,
+        default=None,
+        gt=0,
+        le=LONGEST,
+        both=True,
+        example=[3.5, 3.5],
+        doc="diameter of the pins or balls in measures.csv; a simple size that suits all tooth "
+        "spaces if left out",
     )
 
 

@@ -34,6 +34,9 @@ if TYPE_CHECKING:
 _PLAIN: Final = frozenset({"csv", "inspection"})
 """Files that need only the teeth."""
 
+_OF_SHOP: Final = frozenset({"inspection", "drawing-dxf", "drawing-svg"})
+"""Files that say what is measured."""
+
 WHOLE: Final = 1e-9
 """Share of a lobe, travel or ratio that is rounding."""
 
@@ -185,6 +188,16 @@ class MadePair(PartsResult):
         first, second = (2.0 * blank.bore_reach for blank in blanks)
         return first or None, None if self.pair.on_rack else second or None
 
+    @property
+    def pins(self) -> tuple[float | None, float | None] | None:
+        """Diameters of the pins with which both wheels are measured, mm; None where none is asked.
+
+        A diameter that is None is the recommended one.
+        """
+        output = self.design.output
+        asked = output.pin_diameter is not None or not _OF_SHOP.isdisjoint(output.files)
+        return (output.pin_diameter or (None, None)) if asked else None
+
     @cached_property
     def subject(self) -> CheckedPair:
         """Input of the checks of teeth; for stepped wheels the lowest step."""
@@ -196,7 +209,12 @@ class MadePair(PartsResult):
             rim = self.design.ring.least_rim(gears[1].largest_radius, self.pair.module)
         across = self.design.ring.outer_diameter is not None
         return CheckedPair(
-            pair=gears[0].pair, gears=gears, bores=self.bores, rim=rim, across=across
+            pair=gears[0].pair,
+            gears=gears,
+            bores=self.bores,
+            rim=rim,
+            across=across,
+            pins=self.pins,
         )
 
     @cached_property

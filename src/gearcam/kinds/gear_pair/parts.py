@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
@@ -252,16 +252,35 @@ def inspection_rows(steps: Steps, count: int) -> Columns:
         Both wheels, every step, every whole tooth, both sides, from root to tip: points of the
         finished flanks and outward normals of the metal, in the wheel's frame.
     """
+    names = ("wheel", "step", "tooth", "side", "point", "x_mm", "y_mm", "nx", "ny")
+    rows = _rows(steps, lambda gear: gear.flank_points(count))
+    return Columns({name: rows[name] for name in names})
+
+
+def measure_rows(steps: Steps, pins: Sequence[float | None]) -> Columns:
+    """Return what is measured on all wheels of all steps, by column (see `Measuring.table`).
+
+    Parameters
+    ----------
+    steps : tuple of (Gear, Gear)
+        Both wheels of each step, from below.
+    pins : two float or None, mm
+        Diameters of the pins; None: the recommended one.
+    """
+    return _rows(steps, lambda gear: gear.measuring.table(pins[gear.wheel - 1]))
+
+
+def _rows(steps: Steps, table: Callable[[Gear], Columns]) -> Columns:
+    """Return the tables of all wheels of all steps, one below the other."""
     blocks = [
-        {"wheel": gear.wheel, "step": step, **gear.flank_points(count)}
+        {"wheel": gear.wheel, "step": step, **table(gear)}
         for step, gears in enumerate(steps, start=1)
         for gear in gears
     ]
-    names = ("wheel", "step", "tooth", "side", "point", "x_mm", "y_mm", "nx", "ny")
     return Columns(
         {
             name: np.concatenate([np.broadcast_to(one[name], one["tooth"].shape) for one in blocks])
-            for name in names
+            for name in blocks[0]
         }
     )
 

@@ -15,6 +15,7 @@ from gearcam.base.findings import Finding, in_order, run_checks
 from gearcam.base.numerals import FEW, formatted
 from gearcam.gears import checks  # noqa: F401  (its checks register themselves)
 from gearcam.gears.subject import KIND
+from gearcam.gears.track import Wheel
 from gearcam.kinds.gear_pair.made import WHOLE, MadePair
 from gearcam.kinds.gear_pair.tables import (
     centrode_columns,
@@ -24,7 +25,7 @@ from gearcam.kinds.gear_pair.tables import (
 )
 from gearcam.meshing import drive_checks  # noqa: F401  (its checks register themselves)
 from gearcam.meshing.contact import Contacts, contacts
-from gearcam.numeric.arguments import angles, one_of, whole
+from gearcam.numeric.arguments import angles, one_of, refused, whole
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
 from gearcam.numeric.piecewise import with_both_sides
@@ -73,7 +74,7 @@ class GearPairResult(MadePair):
 
     for_users = (
         "centrodes", "contact", "contact_ratio", "contact_ratios", "gear1", "gear2", "gears",
-        "law", "mesh", "motion", "pair",
+        "law", "measures", "mesh", "motion", "pair", "span",
     )  # fmt: skip
 
     stages: ClassVar[Mapping[str, str]] = {
@@ -368,6 +369,88 @@ class GearPairResult(MadePair):
         (array([1, 2]), array([1.705, 1.705]))
         """
         return contact_ratio_columns(self.subject.sides)
+
+    def measures(self, wheel: Wheel = 1, pin_diameter: float | None = None) -> Columns:
+        """Return what a shop measures on a finished wheel, tooth by tooth, as in ``measures.csv``.
+
+        Parameters
+        ----------
+        wheel : {1, 2}
+            The driver or what it drives; of stepped wheels the lowest step.
+        pin_diameter : float, optional, mm
+            Diameter of the pins or balls; by default that of the design, or the recommended one.
+
+        Returns
+        -------
+        Columns
+            A row for each whole tooth and the space after it; nan where there is no such measure.
+            ``tooth``; ``pin_diameter_mm``; ``pin_least_mm``, ``pin_most_mm``, the thinnest and
+            thickest pin that touches both flanks; ``x_mm``, ``y_mm``, ``center_radius_mm``,
+            ``center_deg``, the centre of the pin in the wheel's frame; ``contact_radius_before_mm``,
+            ``contact_radius_after_mm``, of the contacts on this tooth and the next, from the axis;
+            ``root_gap_mm``, ``stands_out_mm``, distances of the pin from the root and beyond the
+            tips; ``opposite``, ``over_pins_mm``, the space half of all teeth ahead, and the measure
+            over both pins (in a ring between them, on a rack over the pin and the back);
+            ``chord_mm``, ``chord_depth_mm``, the pitch chord and its depth below the tip;
+            ``constant_chord_mm``, ``constant_chord_depth_mm``; ``span_teeth``, ``span_mm``, a steady
+            span from this tooth on; ``span_radius_first_mm``, ``span_radius_last_mm`` of its
+            contacts from the axis; ``span_rocked_1deg_mm``, its change if the jaws rock by 1 deg.
+
+        Raises
+        ------
+        DesignError
+            If there is no such wheel, or the diameter is not positive.
+        InfeasibleError
+            If the wheel is impossible, or a pin of this diameter touches both flanks of no space.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> columns = result.measures(1, pin_diameter=1.75)
+        >>> columns["over_pins_mm"][:2].round(4)
+        array([44.4238, 44.3553])
+        """
+        if pin_diameter is None:
+            pin_diameter = (self.pins or (None, None))[self._wheel(wheel) - 1]
+        elif not isinstance(pin_diameter, int | float) or not 0.0 < pin_diameter < math.inf:
+            raise refused("no diameter", "pin_diameter", pin_diameter, "a positive number, mm")
+        return self.gears[self._wheel(wheel) - 1].measuring.table(pin_diameter)
+
+    def span(self, wheel: Wheel, first: int, teeth: int) -> float:
+        """Return the span over some teeth of a finished wheel, mm.
+
+        Parameters
+        ----------
+        wheel : {1, 2}
+            The driver or what it drives; of stepped wheels the lowest step.
+        first : int
+            Number of the first tooth between the jaws.
+        teeth : int
+            How many teeth are between them.
+
+        Raises
+        ------
+        DesignError
+            If there is no such wheel, or a number is not whole.
+        InfeasibleError
+            If no reading is steady there, since both flanks have no common normal: it names the
+            nearest place where one is.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+        >>> round(result.span(1, first=40, teeth=5), 6)  # across the near vertex
+        13.821117
+        """
+        numbers = whole("first", first, 0), whole("teeth", teeth, 1)
+        return self.gears[self._wheel(wheel) - 1].measuring.span(*numbers)
+
+    def _wheel(self, wheel: int) -> int:
+        if wheel not in (1, 2):
+            raise refused("there is no such wheel", "wheel", wheel, "1 or 2")
+        return wheel
 
     def _phases(self, phi1: ArrayLike | None) -> Array:
         """Return given driver angles, or by default those of the centrodes."""

@@ -269,7 +269,51 @@ def _gear(result: GearPairResult, gear: Gear) -> Tree:
         "clearance_mm": blank.clearance or None,
         "tip_rounding_mm": blank.tip_rounding or None,
         **_part(result, gear),
+        "measuring": _measuring(gear, result.pins[gear.wheel - 1]) if result.pins else None,
     }
+
+
+def _measuring(gear: Gear, asked: float | None) -> Tree:
+    """Return what is measured on a wheel with a pin of the diameter `asked`, or recommended, mm."""
+    measuring, slides = gear.measuring, gear.toothing.track.slides
+    diameter, pins = measuring.pins(asked)
+    over = "over one pin and the back" if slides else "over two pins"
+    every = {
+        "center_radius_mm": ("pin's centre from the axis", np.abs(pins.center) * (not slides)),
+        "over_pins_mm": ("between two pins" if gear.ring else over, pins.over),
+        "chord_mm": ("pitch chord of a tooth", measuring.over.chords["chord"]),
+        "chord_depth_mm": ("depth of the pitch chord", measuring.over.chords["chord_depth"]),
+        "constant_chord_mm": ("constant chord", measuring.over.chords["constant_chord"]),
+        "constant_chord_depth_mm": (
+            "depth of the constant chord",
+            measuring.over.chords["constant_chord_depth"],
+        ),
+    }
+    tree: Tree = {"pin_diameter_mm": Fact(diameter, "measuring pin")}
+    for name, (meaning, values) in every.items():
+        there = values[np.isfinite(values)]
+        if there.any():
+            value = extent(float(there.min()), float(there.max()))
+            tree[name] = Fact(value, meaning, place=f"{len(there)} of {len(values)}")
+    spans, best = measuring.spans, dict[int, int]()
+    for number, place in enumerate(spans.place.tolist()):
+        best.setdefault(place, number)
+    tree["spans"] = [
+        {
+            "first": int(spans.first[one]),
+            "last": int(spans.last[one]),
+            "teeth": int(spans.teeth[one]),
+            "span_mm": Fact(
+                float(spans.reading[one]), _span_text(spans.first[one], spans.last[one])
+            ),
+        }
+        for one in best.values()
+    ] or None
+    return tree
+
+
+def _span_text(first: int, last: int) -> str:
+    return f"span over teeth {first} to {last}"
 
 
 def _part(result: GearPairResult, gear: Gear) -> Tree:
@@ -306,17 +350,20 @@ def _tables(result: GearPairResult, _: Measured) -> Files:
 
 
 def _inspection(result: GearPairResult, _: Measured) -> Files:
-    """Return the points for inspection.
+    """Return the points for inspection, and what is measured by hand.
 
-    Files: inspection.csv.
+    Files: inspection.csv, measures.csv.
 
-    Points on every flank with their normals, for a measuring machine.
+    Points on every flank with their normals, for a measuring machine; tooth by tooth the measures
+    over pins, chords and spans of the finished wheels.
     """
     from gearcam.export.table import table_bytes
-    from gearcam.kinds.gear_pair.parts import inspection_rows
+    from gearcam.kinds.gear_pair.parts import inspection_rows, measure_rows
 
     rows = inspection_rows(result.steps, result.design.output.inspection_points)
-    return {"inspection.csv": table_bytes(rows)}
+    measures = measure_rows(result.steps, result.pins or (None, None))
+    missing = {name: np.ma.masked_invalid(values) for name, values in measures.items()}
+    return {"inspection.csv": table_bytes(rows), "measures.csv": table_bytes(missing)}
 
 
 _SOLIDS: Final = """
