@@ -236,8 +236,9 @@ class PinMeasures(ShortRepr):
             across = center - center[opposite]
             away = inwards * across / np.abs(across)
             over = np.abs(across) + 2.0 * inwards * radius
+            there = there & there[opposite]
             for at, direction in ((around, away), (opposite, -away)):
-                there = there[at] & (self._stands_out(center[at], direction, at) > -radius)
+                there &= self._stands_out(center[at], direction, at) > -radius
         return Pins(center, contact, gap, out, opposite, np.where(there, over, np.nan))
 
     def _stands_out(self, center: Plane, away: Plane, at: Ints) -> Array:
