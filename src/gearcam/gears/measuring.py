@@ -19,7 +19,7 @@ from gearcam.gears.outline import Outline
 from gearcam.gears.pins import PinMeasures, Pins
 from gearcam.gears.spans import Spans, find_spans
 from gearcam.gears.track import Wheel
-from gearcam.numeric.arrays import Array, Ints
+from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.columns import Columns
 
 PIN: Final = "output.pin_diameter_mm"
@@ -96,7 +96,7 @@ class Measuring(ShortRepr):
         def filled(values: Array) -> Array:
             return np.append(values, np.full(count - len(values), np.nan))
 
-        def radii(points: Array) -> Array:
+        def radii(points: Array | Plane) -> Array:
             return filled(np.abs(points) * (np.nan if slides else 1.0))
 
         opposite = np.where(

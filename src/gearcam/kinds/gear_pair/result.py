@@ -386,15 +386,16 @@ class GearPairResult(MadePair):
             A row for each whole tooth and the space after it; nan where there is no such measure.
             ``tooth``; ``pin_diameter_mm``; ``pin_least_mm``, ``pin_most_mm``, the thinnest and
             thickest pin that touches both flanks; ``x_mm``, ``y_mm``, ``center_radius_mm``,
-            ``center_deg``, the centre of the pin in the wheel's frame; ``contact_radius_before_mm``,
-            ``contact_radius_after_mm``, of the contacts on this tooth and the next, from the axis;
-            ``root_gap_mm``, ``stands_out_mm``, distances of the pin from the root and beyond the
-            tips; ``opposite``, ``over_pins_mm``, the space half of all teeth ahead, and the measure
-            over both pins (in a ring between them, on a rack over the pin and the back);
-            ``chord_mm``, ``chord_depth_mm``, the pitch chord and its depth below the tip;
-            ``constant_chord_mm``, ``constant_chord_depth_mm``; ``span_teeth``, ``span_mm``, a steady
-            span from this tooth on; ``span_radius_first_mm``, ``span_radius_last_mm`` of its
-            contacts from the axis; ``span_rocked_1deg_mm``, its change if the jaws rock by 1 deg.
+            ``center_deg``, the centre of the pin in the wheel's frame;
+            ``contact_radius_before_mm``, ``contact_radius_after_mm``, of the contacts on this tooth
+            and the next, from the axis; ``root_gap_mm``, ``stands_out_mm``, distances of the pin
+            from the root and beyond the tips; ``opposite``, ``over_pins_mm``, the space half of all
+            teeth ahead, and the measure over both pins (in a ring between them, on a rack over the
+            pin and the back); ``chord_mm``, ``chord_depth_mm``, the pitch chord and its depth below
+            the tip; ``constant_chord_mm``, ``constant_chord_depth_mm``; ``span_teeth``,
+            ``span_mm``, a steady span from this tooth on; ``span_radius_first_mm``,
+            ``span_radius_last_mm`` of its contacts from the axis; ``span_rocked_1deg_mm``, its
+            change if the jaws rock by 1 deg.
 
         Raises
         ------

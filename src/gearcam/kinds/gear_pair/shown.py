@@ -18,7 +18,7 @@ from gearcam.gears.subject import KIND, CheckedPair
 from gearcam.kinds.gear_pair.tables import POINTS
 from gearcam.laws.ratio.span import angle_text
 from gearcam.meshing.drive_checks import side_name
-from gearcam.numeric.arrays import first_least
+from gearcam.numeric.arrays import distinct, first_least
 from gearcam.parts.mass import part_facts, size_fact
 from gearcam.report.file import report_files
 from gearcam.results.parts import Files, Measured, part_files
@@ -295,25 +295,21 @@ def _measuring(gear: Gear, asked: float | None) -> Tree:
         if there.any():
             value = extent(float(there.min()), float(there.max()))
             tree[name] = Fact(value, meaning, place=f"{len(there)} of {len(values)}")
-    spans, best = measuring.spans, dict[int, int]()
-    for number, place in enumerate(spans.place.tolist()):
-        best.setdefault(place, number)
-    tree["spans"] = [
-        {
-            "first": int(spans.first[one]),
-            "last": int(spans.last[one]),
-            "teeth": int(spans.teeth[one]),
-            "span_mm": Fact(
-                float(spans.reading[one]), _span_text(spans.first[one], spans.last[one])
-            ),
-        }
-        for one in best.values()
-    ] or None
+    tree["spans"] = [*_spans(gear)] or None
     return tree
 
 
-def _span_text(first: int, last: int) -> str:
-    return f"span over teeth {first} to {last}"
+def _spans(gear: Gear) -> Iterator[Tree]:
+    """Yield of each place with steady spans that which is touched nearest to the flanks' middle."""
+    spans, places = gear.measuring.spans, dict[int, int]()
+    anywhere = len(distinct(spans.first[spans.place < 0])) == len(gear.measuring.numbers)
+    for number, place in enumerate(spans.place.tolist()):
+        places.setdefault(place, number)
+    for number in places.values():
+        first, last, teeth = (int(one[number]) for one in (spans.first, spans.last, spans.teeth))
+        where = f"{teeth} teeth" if anywhere else f"teeth {first} to {last}"
+        span = Fact(float(spans.reading[number]), f"span over {where}")
+        yield {"first": first, "last": last, "teeth": teeth, "span_mm": span}
 
 
 def _part(result: GearPairResult, gear: Gear) -> Tree:
