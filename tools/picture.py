@@ -15,12 +15,29 @@ import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import numpy as np
 from PIL import Image
 from selenium.webdriver import Chrome
 from selenium.webdriver.chrome.options import Options
 from selenium.webdriver.chrome.service import Service
 
 import gearcam
+from gearcam.export.svg import svg_bytes
+from gearcam.parts.shapes import Circle
+from gearcam.pictures.drawings import (
+    CENTER,
+    FOLLOWER,
+    GROUND,
+    OUTLINE,
+    TRACE,
+    Cross,
+    Drawing,
+    Feature,
+)
+from gearcam.pictures.drawings import (
+    Path as Line,
+)
+from gearcam.pictures.labels import Label
 
 ROOT = Path(__file__).resolve().parents[1]
 PROFILES = ROOT / "profiles"
@@ -45,6 +62,9 @@ DRAWN = {
     "nail_machine_slide": ("nail_machine_slide", 720),
 }
 """Pictures of assembled parts: profile, and width in pixels."""
+
+MEASURED = "shop_order"
+"""Profile of the picture of what is measured."""
 
 
 _PLACE_OF_SOLIDS = """
@@ -114,10 +134,51 @@ def drawn(profile: Path, width: int, folder: str) -> str:
     """Return the picture of assembled parts, SVG."""
     written = gearcam.build(gearcam.load(profile)).write(folder, files=["svg"])
     (name,) = [name for name in written.files if name.endswith(".svg")]
-    text = (written.directory / name).read_text("utf-8")
+    return sized((written.directory / name).read_text("utf-8"), width)
+
+
+def sized(text: str, width: int) -> str:
+    """Return a picture, SVG, that is so many pixels wide."""
     (size,) = re.findall(r'width="(\d+)" height="(\d+)" role', text)
     height = round(width * int(size[1]) / int(size[0]))
     return re.sub(r'width="\d+" height="\d+" role', f'width="{width}" height="{height}" role', text)
+
+
+def measured(profile: Path) -> str:
+    """Return a picture of pins and of the jaws of all spans on the driver of a pair, SVG."""
+    gear = gearcam.build(gearcam.load(profile)).gear1
+    diameter, pins = gear.measuring.pins()
+    spans, module = gear.measuring.spans, gear.pair.module
+    features = [
+        Feature(layer=OUTLINE, shape=gear.profile.contour, metal=True),
+        Feature(layer=CENTER, shape=Cross(center=0j, size=2.0 * module)),
+    ]
+    opposite, third = int(pins.opposite[0]), 3 * len(pins.center) // 8
+    for space in (0, opposite, third):
+        center = complex(pins.center[space])
+        features.append(Feature(layer=FOLLOWER, shape=Circle(center=center, diameter=diameter)))
+    across = pins.center[[0, opposite]]
+    features.append(Feature(layer=TRACE, shape=Line(points=across, closed=False)))
+    beside = complex(pins.center[third] * (1.0 + 2.2 * module / abs(pins.center[third])))
+    labels = [Label(f"pin {diameter:g}", beside, 0.9 * module)]
+    for place in sorted(set(spans.place)):
+        number = int(np.flatnonzero(spans.place == place)[0])
+        last, first = spans.contact[:, number]
+        normal = (last - first) / abs(last - first)
+        jaw = gear.toothing.turn * normal * module
+        for contact in (last, first):
+            ends = contact + np.array([-1.0, 3.5]) * jaw
+            features.append(Feature(layer=GROUND, shape=Line(points=ends, closed=False)))
+        line = np.array([first, last]) + 3.0 * jaw
+        features.append(Feature(layer=TRACE, shape=Line(points=line, closed=False)))
+        text = f"{spans.reading[number]:.3f}"
+        labels.append(Label(text, complex(line.mean() + 0.9 * jaw), 0.9 * module))
+    labels.append(
+        Label(f"{pins.over[0]:.3f}", complex(across.mean() + 1.2j * module), 0.9 * module)
+    )
+    drawing = Drawing(name="measuring", features=tuple(features))
+    title = "Over two pins, and the four spans of an ellipse, mm"
+    return sized(svg_bytes(drawing, title=title, labels=labels).decode(), 560)
 
 
 if __name__ == "__main__":
@@ -130,6 +191,8 @@ if __name__ == "__main__":
         table = report(PROFILES / "globoidal_indexer.toml", folder)
         (PICTURES / "globoidal_cam.png").write_bytes(taken(table, 30.0, (1100, 4000), solid=True))
         (PICTURES / "live_view.png").write_bytes(live_view(folder))
+        picture = measured(PROFILES / f"{MEASURED}.toml")
+        (PICTURES / "measuring.svg").write_text(picture, "utf-8")
         for name, (profile, width) in DRAWN.items():
             picture = drawn(PROFILES / f"{profile}.toml", width, folder)
             (PICTURES / f"{name}.svg").write_text(picture, "utf-8")

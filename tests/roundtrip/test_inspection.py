@@ -107,4 +107,53 @@ def test_rounded_tips_have_no_points() -> None:
 
 def test_the_command_writes_the_file(tmp_path: Path) -> None:
     written = job("ellipse").write(tmp_path)
-    assert written.files == ("inspection.csv", "summary.json")
+    assert written.files == ("inspection.csv", "measures.csv", "summary.json")
+
+
+def test_measures_are_a_row_for_each_tooth() -> None:
+    made = job("ellipse", clearance=(0.05, 0.02))
+    rows = table(made.files("inspection")["measures.csv"])
+    assert list(rows["tooth"]) == 2 * [*range(1, 42)]
+    assert list(rows["wheel"]) == 41 * [1] + 41 * [2]
+    for wheel in (1, 2):
+        columns = made.measures(wheel)
+        for name, values in columns.items():
+            read_back = rows[name][rows["wheel"] == wheel]
+            np.testing.assert_allclose(read_back, values, rtol=1e-14, err_msg=name)
+    over = [one.measures(1, 1.75)["over_pins_mm"] for one in (made, job("ellipse"))]
+    thinner = over[0] - over[1]
+    # 0.05 mm off each flank lowers a pin by its share over sin(alpha), on both sides
+    assert thinner == pytest.approx(-2 * 0.05 / np.sin(np.radians(20)), rel=0.25)
+
+
+def test_rows_of_open_wheels_and_steps() -> None:
+    door = table(job("furnace_door").files("inspection")["measures.csv"])
+    first = door["wheel"] == 1
+    assert np.isnan(door["over_pins_mm"]).all()
+    assert np.isnan(door["center_radius_mm"][first]).sum() == 1  # after the last tooth
+    steps = table(job("stepped_ellipse").files("inspection")["measures.csv"])
+    assert set(steps["step"]) == {1, 2, 3, 4}
+    one = [steps["center_radius_mm"][(steps["step"] == k) & (steps["wheel"] == 1)] for k in (1, 2)]
+    assert np.abs(one[0] - one[1]).max() > 0.01  # teeth of each step lie elsewhere
+
+
+def test_nothing_is_measured_unless_it_is_asked_for() -> None:
+    plain = GearPairResult(replace(profile("ellipse").design, output=PairOutputSpec()))
+    assert not any("measuring" in name for name in plain.facts)
+    assert plain.findings
+    assert "measuring" not in vars(plain.gear1)
+    asked = GearPairResult(
+        replace(plain.design, output=PairOutputSpec(pin_diameter=(1.75, 2.0), files=("csv",)))
+    )
+    assert asked.facts["gears.1.measuring.pin_diameter_mm"] == 2.0
+    assert asked.facts["gears.0.measuring.spans.0.teeth"] == 5
+    assert asked.facts["gears.0.measuring.over_pins_mm"]["max"] == pytest.approx(44.4238, abs=1e-4)
+
+
+def test_drawings_say_what_is_measured() -> None:
+    made = GearPairResult(
+        replace(profile("circular").design, output=PairOutputSpec(files=("drawing-svg",)))
+    )
+    text = made.files("drawing-svg")["gear1_drawing.svg"].decode()
+    for words in ("measuring pin", "over two pins", "constant chord", "span over 3 teeth"):
+        assert words in text

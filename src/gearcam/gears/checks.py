@@ -477,11 +477,13 @@ def measuring_pin(subject: CheckedPair, limit: float) -> Iterator[Remark]:  # no
         missed = ~pins.measured
         if missed.any():
             spaces = tooth_ranges(measuring.numbers[: len(missed)][missed].tolist())
-            text = (
+            best = readable(measuring.over.recommended, "mm")
+            yield Remark(
                 f"A pin of {size} cannot be measured in the spaces after these teeth: it does not "
+                "touch both flanks, does not stand out of the tips, or meets the root"
+                + ("." if asked is None else f". The recommended pin has {best}."),
+                f"{where}, teeth {spaces}",
             )
-            text += "touch both flanks, does not stand out of the tips, or meets the root."
-            yield Remark(text, f"{where}, teeth {spaces}")
 
 
 @pair_check(

@@ -83,7 +83,7 @@ class Measuring(ShortRepr):
         return diameter, pins
 
     def table(self, diameter: float | None = None) -> Columns:
-        """Return a row for each whole tooth and the space after it (see `GearPairResult.measures`).
+        """Return a row for each whole tooth and the space after it; columns as in docs/summary.md.
 
         Parameters
         ----------
@@ -147,7 +147,14 @@ class Measuring(ShortRepr):
         return best, np.searchsorted(self.numbers, spans.first[best])
 
     def span(self, first: int, teeth: int) -> float:
-        """Return the reading of flat jaws over `teeth` teeth from the `first` on, mm.
+        """Return the steady reading of flat jaws over some teeth, mm.
+
+        Parameters
+        ----------
+        first : int
+            Number of the first tooth between the jaws.
+        teeth : int
+            How many teeth are between them.
 
         Raises
         ------

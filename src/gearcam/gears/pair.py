@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,7 +19,6 @@ from gearcam.base.numerals import formatted
 from gearcam.base.tolerances import Tolerances
 from gearcam.gears.cutter import choose_cutter, ring_pinions
 from gearcam.gears.flank import Toothing
-from gearcam.gears.measuring import Measuring
 from gearcam.gears.outline import Outline, build_outline
 from gearcam.gears.rack_limits import (
     demand_clearance,
@@ -37,6 +36,9 @@ from gearcam.laws.ratio.span import RACK, RING, WHEEL, Lobes
 from gearcam.numeric.arguments import whole
 from gearcam.numeric.arrays import Array, Plane, as_pairs
 from gearcam.numeric.columns import Columns
+
+if TYPE_CHECKING:
+    from gearcam.gears.measuring import Measuring
 
 FINEST = 1e-9
 """Smallest tolerance of an outline, in modules: rounding hides finer ones."""
@@ -191,6 +193,8 @@ class Gear(ShortRepr, NotebookView):
     @cached_property
     def measuring(self) -> Measuring:
         """What a shop measures on its teeth."""
+        from gearcam.gears.measuring import Measuring
+
         return Measuring(wheel=self.wheel, outline=self.profile)
 
     def flank_points(self, count: int) -> Columns:

@@ -34,8 +34,9 @@ _CELLS: Final = 1024
 _SLACK: Final = 1.5
 """Factor on how far the conditions may change within a cell."""
 
-_STEPS: Final = 25
-"""Steps of Newton's method; six suffice."""
+_STEPS, _SMALL = 12, 1e-14
+"""Steps of Newton's method, of which six suffice, and the length of its last, over that of the
+centrode."""
 
 _NEAR: Final = 4.0
 """Distance from the middle of its cell at which a root is of another one, in cells."""
@@ -243,12 +244,11 @@ class _Cells(NamedTuple):
 
     def arcs(self, alpha: float) -> Iterator[tuple[float, float, float]]:
         """Yield start and end, mm, and curvature of arcs that are long enough for jaws."""
-        for arc in range(int(self.arc[self.once - 1]) + 1):
-            at = np.flatnonzero(self.arc == arc)
-            start, stop = float(self.ends[at[0]]), float(self.ends[at[-1] + 1])
-            kappa = float(self.middle.kappa[at[0]])
-            if kappa * (stop - start) >= 2.0 * alpha:
-                yield start, stop, kappa
+        first = np.searchsorted(self.arc, np.arange(self.arc[self.once - 1] + 1))
+        last = np.searchsorted(self.arc, np.arange(len(first)), side="right")
+        start, stop, kappa = self.ends[first], self.ends[last], self.middle.kappa[first]
+        for arc in np.flatnonzero(kappa * (stop - start) >= 2.0 * alpha):
+            yield float(start[arc]), float(stop[arc]), float(kappa[arc])
 
     @classmethod
     def of(cls, toothing: Toothing) -> _Cells:
@@ -336,7 +336,10 @@ def _common_normals(toothing: Toothing, rolls: Array, longest: Array) -> tuple[A
         u = -along[1] - sense * frames.kappa[1] * chord.real
         with np.errstate(divide="ignore", invalid="ignore"):
             move = np.stack([q * aside - u * angle, r * angle - p * aside]) / (p * u - q * r)
-        rolls = rolls + np.where(np.isfinite(move), np.clip(move, -longest, longest), 0.0)
+        move = np.where(np.isfinite(move), np.clip(move, -longest, longest), 0.0)
+        rolls = rolls + move
+        if np.abs(move).max(initial=0.0) <= _SMALL * toothing.length:
+            break
     _, _, angle, chord = conditions(rolls)
     exact = (np.abs(angle) <= _EXACT) & (np.abs(chord.imag) <= _EXACT * toothing.length)
     return rolls, exact & (chord.real > 0.0)

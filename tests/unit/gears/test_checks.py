@@ -21,6 +21,7 @@ from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.formula import Formula
 from gearcam.laws.ratio.phases import Phases
+from helpers_built import built
 from helpers_pairs import job, profile
 from helpers_rings import highest_on_circles, ring, ring_job
 
@@ -247,9 +248,27 @@ def test_every_check_of_the_registry_is_tested_here() -> None:
         "thin-tip",
         "short-flank",
         "remote-cutter",
+        "measuring-pin",
     }
     assert named == {check.code for check in CHECKS.values() if check.kind == KIND}
-    assert len(named) == 18
+    assert len(named) == 19
+
+
+def test_a_pin_that_touches_not_all_flanks_is_noted() -> None:
+    made = job(Ellipse(eccentricity=0.3), (41, 41))
+    thickest = float(np.min(made.gear1.measuring.over.thickest.diameter))
+    for more, noted in ((1e-6, True), (-1e-6, False)):
+        output = replace(made.design.output, pin_diameter=(thickest + more, 1.75))
+        found = codes(built(replace(made.design, output=output)))
+        assert ("measuring-pin" in found) == noted
+        if noted:
+            assert found["measuring-pin"].severity == "note"
+            assert "The recommended pin has 1.75 mm." in found["measuring-pin"].message
+            assert found["measuring-pin"].where == "wheel 1, teeth 11, 31"
+    unusual = replace(made.design, pair=replace(made.design.pair, module=0.011))
+    drawn = replace(unusual, output=replace(made.design.output, files=("drawing-svg",)))
+    assert "measuring-pin" not in codes(built(unusual))
+    assert "no pin of a simple size" in codes(built(drawn))["measuring-pin"].message.lower()
 
 
 def test_a_pair_that_does_not_drive_is_an_error() -> None:
