@@ -22,6 +22,7 @@ from gearcam.numeric.arrays import as_complex
 from gearcam.parts.blank import Blank
 from helpers_built import built
 from helpers_pairs import job, profile
+from witness.gauges import jaw_misfits, misfits
 
 EXACT = 1e-9
 
@@ -155,14 +156,6 @@ def gears(name: str) -> list[Gear]:
     return [gear for step in made.steps for gear in step]
 
 
-def misfits(measuring: Measuring, gear: Gear) -> np.ndarray:
-    """How far discs in the found places are from touching the outline, mm."""
-    diameter, pins = measuring.pins()
-    ring = shapely.LinearRing(gear.outline)
-    places = [shapely.Point(one.real, one.imag) for one in pins.center[pins.measured]]
-    return np.array([ring.distance(one) for one in places]) - 0.5 * diameter
-
-
 @pytest.mark.parametrize("name", FINISHED)
 def test_a_disc_lies_between_the_flanks(name: str) -> None:
     for gear in gears(name):
@@ -227,6 +220,13 @@ def test_depths_and_gaps_are_those_of_the_outline(name: str) -> None:
         for number in range(0, len(pins.center), 7):
             reach = np.abs(points - pins.center[number]).min()
             assert reach > 0.5 * table["pin_diameter_mm"][0] - tolerance
+
+
+@pytest.mark.parametrize("name", FINISHED)
+def test_jaws_lie_on_the_outermost_points_of_both_teeth(name: str) -> None:
+    for gear in gears(name):
+        off = jaw_misfits(gear.measuring, gear)
+        assert np.abs(off).max(initial=0.0) < 3.0 * gear.profile.chord_error
 
 
 @pytest.mark.parametrize("made", [ellipse, waisted, lambda: ellipse(j=0.1, clearance=(0.03, 0.03))])

@@ -140,6 +140,12 @@ def _studies(d: Draw, design: dict[str, Any], module: float) -> None:
         design["errors"] = _errors(d, design, module)
 
 
+def _pins(d: Draw, module: float) -> dict[str, Any]:
+    """Return pins for both wheels, near the usual size, in a few designs."""
+    pins = [short(module * d.even(1.55, 1.9)) for _ in range(2)]
+    return {"pin_diameter_mm": d.pick([pins, pins[0]])} if d.chance(0.1) else {}
+
+
 def _vertices(document: dict[str, Any]) -> float:
     """Return the approximate number of vertices of a pair, to which the time is proportional."""
     pair, steps = document["pair"], document.get("steps", {}).get("count", 1)
@@ -185,6 +191,7 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     if closed and not opened and z[1] > z[0] and d.chance(0.3):
         _ring(d, made, module)
     made["output"] |= asked(d, _SHARES, min(1.0, _AFFORDABLE / _vertices(made)))
+    made["output"] |= _pins(d, module)
     _studies(d, made, module)
     drive(d, made)
     seek(made, index, "pair.center_distance_mm", "mesh.acceleration_max")

@@ -301,7 +301,9 @@ class PinMeasures(ShortRepr):
             return 0.5 * self.toothing.pitch
         for share in _SHARES:
             low, high = (one.diameter[there] for one in self._inside(share))
-            for diameter in _sizes(low.max(), high.min()):
+            if not np.isfinite(low + high).all():
+                continue
+            for diameter in _sizes(float(low.max()), float(high.min())):
                 pins = self.pins(diameter)
                 if (pins.measured & (pins.stands_out > _OUT * module))[there].all():
                     return diameter

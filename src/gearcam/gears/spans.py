@@ -169,6 +169,9 @@ def _spans(outline: Outline, first: Ints, last: Ints, rolls: Array, place: Ints)
     off = np.abs((under - over) / (under + over)).max(axis=0)
     teeth = (last - first) % z + 1
     kept = (teeth > 1) & (frames.kappa > 0.0).all(axis=0)
+    for end in (low[flank], high[flank]):  # a flank that turns concave farther on lifts the jaw
+        beyond = SIDES * (np.conj(normal) * (end - contact)).real
+        kept &= (beyond <= _TOUCH * reading).all(axis=0)
     for row in np.flatnonzero(kept & (place >= 0)):
         of = np.arange(first[row], first[row] + teeth[row]) % z
         tips = high[np.append(of, z + of)]
