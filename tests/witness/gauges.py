@@ -10,8 +10,7 @@ import shapely
 from gearcam.gears.measuring import Measuring
 from gearcam.gears.pair import Gear
 
-
-_AT_ENDS: Final = 0.9
+_AT_ENDS: Final = 0.8
 """Distance of a contact from the middle of its flank from which it is at its end."""
 
 
