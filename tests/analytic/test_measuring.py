@@ -21,8 +21,8 @@ from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.numeric.arrays import as_complex
 from gearcam.parts.blank import Blank
 from helpers_built import built
+from helpers_gauges import jaw_misfits, misfits
 from helpers_pairs import job, profile
-from witness.gauges import jaw_misfits, misfits
 
 EXACT = 1e-9
 

@@ -12,7 +12,7 @@ from gearcam.meshing.checks import KIND
 from gearcam.meshing.numbers import numbers
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import study
-from witness.gauges import jaw_misfits, misfits
+from helpers_gauges import jaw_misfits, misfits
 
 _STEPS: Final = 24
 """Number of phases to study; each takes time."""

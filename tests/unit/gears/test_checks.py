@@ -265,7 +265,7 @@ def test_a_pin_that_touches_not_all_flanks_is_noted() -> None:
             assert found["measuring-pin"].severity == "note"
             assert "The recommended pin has 1.75 mm." in found["measuring-pin"].message
             assert found["measuring-pin"].where == "wheel 1, teeth 11, 31"
-    unusual = replace(made.design, pair=replace(made.design.pair, module=0.004))
+    unusual = replace(made.design, pair=replace(made.design.pair, module=0.003))
     drawn = replace(unusual, output=replace(made.design.output, files=("drawing-svg",)))
     assert "measuring-pin" not in codes(built(unusual))
     assert "no pin of a simple size" in codes(built(drawn))["measuring-pin"].message.lower()
