@@ -19,7 +19,7 @@ from gearcam.gears.outline import Outline
 from gearcam.gears.pins import PinMeasures, Pins
 from gearcam.gears.spans import Spans, find_spans
 from gearcam.gears.track import Wheel
-from gearcam.numeric.arrays import Array, Ints, Plane
+from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.columns import Columns
 
 PIN: Final = "output.pin_diameter_mm"
@@ -93,47 +93,49 @@ class Measuring(ShortRepr):
         diameter, pins = self.pins(diameter)
         count, slides = len(self.numbers), self.outline.toothing.track.slides
 
-        def filled(values: Array) -> Array:
-            return np.append(values, np.full(count - len(values), np.nan))
+        def filled(values: Array, rows: Ints) -> Array:
+            column = np.full(count, np.nan)
+            column[rows] = values
+            return column
 
-        def radii(points: Array | Plane) -> Array:
-            return filled(np.abs(points) * (np.nan if slides else 1.0))
-
-        opposite = np.where(
-            np.isnan(pins.over) | (pins.opposite == np.arange(len(pins.over))),
-            np.nan,
-            self.numbers[pins.opposite],
+        radii = np.abs(np.vstack([pins.center, pins.contact])) * (np.nan if slides else 1.0)
+        alone = np.isnan(pins.over) | (pins.opposite == np.arange(len(pins.over)))
+        of_spaces = {
+            "pin_least_mm": self.over.thinnest.diameter,
+            "pin_most_mm": self.over.thickest.diameter,
+            "x_mm": pins.center.real,
+            "y_mm": pins.center.imag,
+            "center_radius_mm": radii[0],
+            "center_deg": np.where(
+                np.isnan(radii[0]), np.nan, np.degrees(np.angle(pins.center)) % 360.0
+            ),
+            "contact_radius_before_mm": radii[1],
+            "contact_radius_after_mm": radii[2],
+            "root_gap_mm": pins.root_gap,
+            "stands_out_mm": pins.stands_out,
+            "opposite": np.where(alone, np.nan, self.numbers[pins.opposite]),
+            "over_pins_mm": pins.over,
+        }
+        spans, (best, there) = self.spans, self._best
+        of_spans = {
+            "span_teeth": spans.teeth,
+            "span_mm": spans.reading,
+            "span_radius_first_mm": np.abs(spans.contact[1]),
+            "span_radius_last_mm": np.abs(spans.contact[0]),
+            "span_rocked_1deg_mm": spans.rocked * _ROCKED**2,
+        }
+        return Columns(
+            {
+                "tooth": self.numbers,
+                "pin_diameter_mm": np.full(count, diameter),
+                **{
+                    name: filled(values, np.arange(len(values)))
+                    for name, values in of_spaces.items()
+                },
+                **{f"{name}_mm": values for name, values in self.over.chords.items()},
+                **{name: filled(values[best], there) for name, values in of_spans.items()},
+            }
         )
-        angle = np.degrees(np.angle(pins.center)) % 360.0
-        best, there = self._best
-        spans = {
-            "span_teeth": self.spans.teeth[best],
-            "span_mm": self.spans.reading[best],
-            "span_radius_first_mm": np.abs(self.spans.contact[1])[best],
-            "span_radius_last_mm": np.abs(self.spans.contact[0])[best],
-            "span_rocked_1deg_mm": self.spans.rocked[best] * _ROCKED**2,
-        }
-        columns = {
-            "tooth": self.numbers,
-            "pin_diameter_mm": np.full(count, diameter),
-            "pin_least_mm": filled(self.over.thinnest.diameter),
-            "pin_most_mm": filled(self.over.thickest.diameter),
-            "x_mm": filled(pins.center.real),
-            "y_mm": filled(pins.center.imag),
-            "center_radius_mm": radii(pins.center),
-            "center_deg": filled(angle) + radii(np.zeros(len(angle))),
-            "contact_radius_before_mm": radii(pins.contact[0]),
-            "contact_radius_after_mm": radii(pins.contact[1]),
-            "root_gap_mm": filled(pins.root_gap),
-            "stands_out_mm": filled(pins.stands_out),
-            "opposite": filled(opposite),
-            "over_pins_mm": filled(pins.over),
-            **{f"{name}_mm": values for name, values in self.over.chords.items()},
-        }
-        for name, values in spans.items():
-            columns[name] = np.full(count, np.nan)
-            columns[name][there] = values
-        return Columns(columns)
 
     @cached_property
     def _best(self) -> tuple[Ints, Ints]:

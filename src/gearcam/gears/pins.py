@@ -75,6 +75,17 @@ class Spaces(NamedTuple):
         return cls(teeth, sf, flanks.lowest[flank], flanks.highest[flank])
 
 
+def flank_ends(outline: Outline) -> tuple[Plane, Plane]:
+    """Return the lower and the upper ends of all flanks of an `outline`, mm."""
+    toothing, flanks = outline.toothing, outline.flanks
+    sf, sigma = flanks.sf, flanks.sigma
+    low, high = (
+        toothing.flank_points(toothing.frames(toothing.track.angle(sf - sigma * w)), sf, sigma)
+        for w in (flanks.lowest, flanks.highest)
+    )
+    return low, high
+
+
 class Pins(NamedTuple):
     """Pins of one diameter in all n spaces; what does not exist is nan.
 
@@ -248,11 +259,9 @@ class PinMeasures(ShortRepr):
 
     def _top(self, teeth: Ints, away: Plane) -> Array:
         """Return how far different `teeth` reach in the directions `away`, mm."""
-        toothing, flanks, rows = self.toothing, self.outline.flanks, self.outline.rows
+        toothing, rows = self.toothing, self.outline.rows
         both = teeth + np.array([[0], [len(toothing.numbers)]])
-        sf, sigma = flanks.sf[both], flanks.sigma[both]
-        frames = toothing.frames(toothing.track.angle(sf - sigma * flanks.highest[both]))
-        top = (np.conj(away) * toothing.flank_points(frames, sf, sigma)).real.max(axis=0)
+        top = (np.conj(away) * self._upper_ends[both]).real.max(axis=0)
         place = np.full(len(toothing.numbers), -1)
         place[teeth] = np.arange(len(teeth))
         tips = np.flatnonzero(np.isin(rows.kind, (Curve.TIP, Curve.ROUND)))
@@ -273,6 +282,10 @@ class PinMeasures(ShortRepr):
         for phi, which in ((start, slice(None)), (end, slice(None)), (found, inner)):
             np.maximum.at(top, at[which], along(phi, which, 0))
         return top
+
+    @cached_property
+    def _upper_ends(self) -> Plane:
+        return flank_ends(self.outline)[1]
 
     def _root_gap(self, center: Plane) -> Array:
         """Return the distances of centres from the vertices of the roots of their spaces, mm."""

@@ -18,18 +18,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
 from gearcam.gears.flank import Toothing
 from gearcam.gears.outline import Outline
-from gearcam.gears.pins import SIDES
+from gearcam.gears.pins import SIDES, flank_ends
 from gearcam.gears.track import Frames
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
 _CELLS: Final = 1024
-"""Cells of a centrode in the search, of equal shares of its length and its turning together."""
+"""Cells of a centrode in the search, beside those that its knots divide."""
 
 _SLACK: Final = 1.5
 """Factor on how far the conditions may change within a cell."""
@@ -103,30 +103,23 @@ def find_spans(outline: Outline) -> Spans:
     toothing = outline.toothing
     z, flanks = len(toothing.numbers), outline.flanks
     whole = np.arange(z)[toothing.whole]
-    none = np.empty(0, dtype=np.int64)
-    if toothing.track.slides or toothing.track.ring:
-        return _spans(outline, none, none, np.empty((2, 0)), none)
-    cells = _Cells.of(toothing)
-    places = _isolated(toothing, cells)
-    ahead = _within(toothing, flanks.sf[whole, None] - places[0])
-    behind = _within(toothing, places[1] - flanks.sf[z + whole, None])
-    touched_last, touched_first = (
-        (flanks.lowest[at, None] <= reach) & (reach <= flanks.highest[at, None])
-        for at, reach in ((whole, ahead), (z + whole, behind))
-    )
-    last, first, place = np.nonzero(touched_last[:, None] & touched_first)
-    on_arcs = _on_arcs(outline, cells, whole)
-    return _spans(
-        outline,
-        np.append(whole[first], on_arcs[0]),
-        np.append(whole[last], on_arcs[1]),
-        np.append(places[:, place], on_arcs[2], axis=1),
-        np.append(place, np.full(len(on_arcs[0]), -1)),
-    )
+    teeth, rolls, places = np.empty((2, 0), dtype=np.int64), np.empty((2, 0)), np.empty((2, 0))
+    if not (toothing.track.slides or toothing.track.ring):
+        cells = _Cells.of(toothing)
+        places = _isolated(toothing, cells)
+        teeth, rolls = _on_arcs(outline, cells, whole)
+    touched = []
+    for at, side, roll in ((z + whole, -1.0, places[1]), (whole, 1.0, places[0])):
+        reach = side * _within(toothing, flanks.sf[at, None] - roll)
+        touched.append((flanks.lowest[at, None] <= reach) & (reach <= flanks.highest[at, None]))
+    first, last, place = np.nonzero(touched[0][:, None] & touched[1])
+    teeth = np.append(np.stack([whole[first], whole[last]]), teeth, axis=1)
+    rolls = np.append(places[:, place], rolls, axis=1)
+    return _spans(outline, teeth, rolls, np.append(place, np.full(teeth.shape[1] - len(place), -1)))
 
 
-def _on_arcs(outline: Outline, cells: _Cells, whole: Ints) -> tuple[Ints, Ints, Array]:
-    """Return first and last teeth, and rolls a and b, mm, of all readings on arcs of circles."""
+def _on_arcs(outline: Outline, cells: _Cells, whole: Ints) -> tuple[Ints, Array]:
+    """Return first and last teeth, and rolls a and b, mm, of all readings on arcs, (2, n) each."""
     toothing, flanks, z = outline.toothing, outline.flanks, len(outline.toothing.numbers)
     found: dict[tuple[int, int], tuple[float, float]] = {}
     first = np.repeat(whole, len(_MORE))
@@ -146,12 +139,13 @@ def _on_arcs(outline: Outline, cells: _Cells, whole: Ints) -> tuple[Ints, Ints, 
         there[there] = (flanks.lowest[far] <= reach[there]) & (reach[there] <= flanks.highest[far])
         teeth = zip(first[there].tolist(), last[there].tolist(), strict=True)
         found |= {pair: (roll + between, roll) for pair, roll in zip(teeth, b[there], strict=True)}
-    pairs = np.array([*found], dtype=np.int64).reshape(-1, 2)
-    return pairs[:, 0], pairs[:, 1], np.array([*found.values()]).reshape(-1, 2).T
+    pairs = np.array([*found], dtype=np.int64).reshape(-1, 2).T
+    return pairs, np.array([*found.values()]).reshape(-1, 2).T
 
 
-def _spans(outline: Outline, first: Ints, last: Ints, rolls: Array, place: Ints) -> Spans:
+def _spans(outline: Outline, pairs: Ints, rolls: Array, place: Ints) -> Spans:
     """Return the readings at common normals, without those at which jaws would meet other teeth."""
+    first, last = pairs
     toothing, flanks, z = outline.toothing, outline.flanks, len(outline.toothing.numbers)
     cosine = math.cos(toothing.cutter.alpha)
     frames = toothing.frames(toothing.track.angle(rolls))
@@ -164,7 +158,7 @@ def _spans(outline: Outline, first: Ints, last: Ints, rolls: Array, place: Ints)
     with np.errstate(divide="ignore"):
         rocked = 0.5 * (math.sin(toothing.cutter.alpha) * (1.0 / frames.kappa).sum(axis=0) - chord)
     rocked = np.where(place < 0, 0.0, rocked)
-    low, high = _ends(outline)
+    low, high = flank_ends(outline)
     under, over = np.abs(contact - low[flank]), np.abs(contact - high[flank])
     off = np.abs((under - over) / (under + over)).max(axis=0)
     teeth = (last - first) % z + 1
@@ -178,28 +172,9 @@ def _spans(outline: Outline, first: Ints, last: Ints, rolls: Array, place: Ints)
         kept[row] = _free(outline, contact[:, row], normal[row], tips)
     order = np.flatnonzero(kept)
     order = order[np.lexsort((off[order], place[order]))]
-    number = np.array(toothing.numbers)
-    return Spans(
-        number[first[order]],
-        number[last[order]],
-        teeth[order],
-        reading[order],
-        contact[:, order],
-        rocked[order],
-        off[order],
-        place[order],
-    )
-
-
-def _ends(outline: Outline) -> tuple[Plane, Plane]:
-    """Return the lower and the upper ends of all flanks, mm."""
-    toothing, flanks = outline.toothing, outline.flanks
-    sf, sigma = flanks.sf, flanks.sigma
-    low, high = (
-        toothing.flank_points(toothing.frames(toothing.track.angle(sf - sigma * w)), sf, sigma)
-        for w in (flanks.lowest, flanks.highest)
-    )
-    return low, high
+    first, last = np.array(toothing.numbers)[pairs]
+    values: tuple[Any, ...] = (first, last, teeth, reading, contact, rocked, off, place)
+    return Spans(*(one[..., order] for one in values))
 
 
 def _free(outline: Outline, contact: Plane, normal: complex, tips: Plane) -> bool:
@@ -257,21 +232,15 @@ class _Cells(NamedTuple):
     def of(cls, toothing: Toothing) -> _Cells:
         """Return the cells of a `toothing`."""
         track = toothing.track.exact
-        low, high = track.angle(np.array([0.0, toothing.length]))
-        fine = np.linspace(low, high, 4 * _CELLS + 1)
-        frames = track.frames(fine, curved=False)
-        turning = np.abs(np.angle(frames.t[1:] / frames.t[:-1]))
-        share = (frames.s - frames.s[0]) / toothing.length
-        share[1:] += np.cumsum(turning) / max(turning.sum(), _EXACT)
-        phi = np.interp(np.linspace(0.0, share[-1], _CELLS + 1), share, fine)
-        phi = np.sort(np.append(phi, track.knots_between(np.array([low]), np.array([high]))[1]))
+        ends = track.angle(np.array([0.0, toothing.length]))
+        knots = track.knots_between(ends[:1], ends[1:])[1]
+        phi = np.sort(np.append(np.linspace(ends[0], ends[1], _CELLS + 1), knots))
         once = len(phi) - 1
         if toothing.closed:
             phi = np.append(phi, phi[1:] + track.around)
         middle = track.frames(0.5 * (phi[1:] + phi[:-1]))
         tangents = track.frames(phi, curved=False).t
-        sense = -toothing.turn.imag
-        steps = sense * np.angle(middle.t[1:] / middle.t[:-1])
+        steps = -toothing.turn.imag * np.angle(middle.t[1:] / middle.t[:-1])
         change = np.abs(np.diff(middle.kappa)) > _ROUND * np.abs(middle.kappa).max()
         return cls(
             track.arc_length(phi),
@@ -304,21 +273,18 @@ def _isolated(toothing: Toothing, cells: _Cells) -> Array:
     near = np.abs((np.conj(normal[j]) * chord).imag) <= limit
     near &= (apart > 0.0) & (apart < (0.5 if toothing.closed else 1.0) * length)
     near &= cells.arc[i] != cells.arc[j]
-    first = middle.s[np.stack([i[near], j[near]])]
-    rolls, exact = _common_normals(toothing, first, size[np.stack([i[near], j[near]])])
-    rolls = rolls[
-        :, exact & (np.abs(rolls - first) <= _NEAR * size[[i[near], j[near]]]).all(axis=0)
-    ]
+    pairs = np.stack([i, j])[:, near]
+    rolls, exact = _common_normals(toothing, middle.s[pairs], size[pairs])
+    rolls = rolls[:, exact & (np.abs(rolls - middle.s[pairs]) <= _NEAR * size[pairs]).all(axis=0)]
     close = _APART * length
-    for start, stop, _ in cells.arcs(alpha):
+    for start, stop, _ in cells.arcs(alpha):  # roots at the ends of arcs
         b = (rolls[1] - start + close) % length if toothing.closed else rolls[1] - start + close
         rolls = rolls[:, (b < 0.0) | (b + rolls[0] - rolls[1] > stop - start + 2.0 * close)]
-    kept: list[int] = []
-    for k, roll in enumerate(rolls.T):
-        away = np.abs(_within(toothing, rolls[:, kept] - roll[:, None])).max(axis=0)
-        if not (away < close).any():
-            kept.append(k)
-    return rolls[:, kept]
+    if toothing.closed:
+        rolls -= (rolls[1] + close) // length * length
+    rolls = rolls[:, np.lexsort(rolls)]
+    new = (np.abs(np.diff(rolls, prepend=np.inf)) > close).any(axis=0)
+    return rolls[:, new]
 
 
 def _common_normals(toothing: Toothing, rolls: Array, longest: Array) -> tuple[Array, Mask]:

@@ -273,30 +273,29 @@ def _gear(result: GearPairResult, gear: Gear) -> Tree:
     }
 
 
+_MEASURED: Final = {
+    "center_radius_mm": "pin's centre from the axis",
+    "over_pins_mm": "over two pins",
+    "chord_mm": "pitch chord of a tooth",
+    "chord_depth_mm": "depth of the pitch chord",
+    "constant_chord_mm": "constant chord",
+    "constant_chord_depth_mm": "depth of the constant chord",
+}
+"""Columns of what is measured whose ends are facts, with their labels."""
+
+
 def _measuring(gear: Gear, asked: float | None) -> Tree:
     """Return what is measured on a wheel with a pin of the diameter `asked`, or recommended, mm."""
-    measuring, slides = gear.measuring, gear.toothing.track.slides
-    diameter, pins = measuring.pins(asked)
-    over = "over one pin and the back" if slides else "over two pins"
-    every = {
-        "center_radius_mm": ("pin's centre from the axis", np.abs(pins.center) * (not slides)),
-        "over_pins_mm": ("between two pins" if gear.ring else over, pins.over),
-        "chord_mm": ("pitch chord of a tooth", measuring.over.chords["chord"]),
-        "chord_depth_mm": ("depth of the pitch chord", measuring.over.chords["chord_depth"]),
-        "constant_chord_mm": ("constant chord", measuring.over.chords["constant_chord"]),
-        "constant_chord_depth_mm": (
-            "depth of the constant chord",
-            measuring.over.chords["constant_chord_depth"],
-        ),
-    }
-    tree: Tree = {"pin_diameter_mm": Fact(diameter, "measuring pin")}
-    for name, (meaning, values) in every.items():
-        there = values[np.isfinite(values)]
+    table = gear.measuring.table(asked)
+    tree: Tree = {"pin_diameter_mm": Fact(float(table["pin_diameter_mm"][0]), "measuring pin")}
+    for name, meaning in _MEASURED.items():
+        there = table[name][np.isfinite(table[name])]
         if there.any():
-            value = extent(float(there.min()), float(there.max()))
-            tree[name] = Fact(value, meaning, place=f"{len(there)} of {len(values)}")
-    tree["spans"] = [*_spans(gear)] or None
-    return tree
+            tree[name] = Fact(extent(float(there.min()), float(there.max())), meaning)
+    if "over_pins_mm" in tree and (gear.ring or gear.toothing.track.slides):
+        words = "between two pins" if gear.ring else "over one pin and the back"
+        tree["over_pins_mm"] = Fact(tree["over_pins_mm"].value, words)
+    return {**tree, "spans": [*_spans(gear)] or None}
 
 
 def _spans(gear: Gear) -> Iterator[Tree]:
