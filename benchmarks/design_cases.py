@@ -1,4 +1,4 @@
-"""Cams as they are designed: sizes that are solved for, and forces."""
+"""Sizes of cams that are solved for, their forces; what is measured on the wheels of a pair."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from measuring import Result, in_turns, table
 
 PROFILES = Path(__file__).parents[1] / "profiles"
 
-SOLVE, STUDY = 0.3, 0.02
+SOLVE, STUDY, MEASURED = 0.3, 0.02, 0.15
 """Targets, s."""
 
 
@@ -33,6 +33,26 @@ def of_cams(tries: int = 9) -> Result:
         found=f"{solve:.2f} s and {1e3 * forces:.0f} ms",
         passed=solve <= SOLVE and forces <= STUDY,
         body=[*table(rows), "", "The lift is computed before the forces, not before the sizes."],
+    )
+
+
+def of_measures(tries: int = 9) -> Result:
+    """(zx) Over pins, chords and spans of both wheels of a pair, whose outlines are finished."""
+    gears = gearcam.build(gearcam.load(PROFILES / "nail_machine_two_phase.toml")).gears
+
+    def measure() -> None:
+        for gear in gears:
+            vars(gear).pop("measuring", None)
+            gear.measuring.table()
+
+    rows = in_turns({"both wheels of nail_machine_two_phase": measure}, tries)
+    (found,) = (row.median for row in rows)
+    return Result(
+        title="(zx) Over pins, chords and spans of a pair",
+        asked=f"at most {MEASURED} s",
+        found=f"{found:.3f} s",
+        passed=found <= MEASURED,
+        body=[*table(rows), "", "The outlines are finished before."],
     )
 
 

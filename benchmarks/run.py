@@ -72,6 +72,7 @@ def main() -> int:
         dynamics_cases.against_peers,
         sweep_cases.of_sweeps,
         design_cases.of_cams,
+        design_cases.of_measures,
         before_cases.against_before,
         asked_cases.of_what_is_asked,
         before_cases.large_growth,
