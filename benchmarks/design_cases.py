@@ -11,7 +11,7 @@ from measuring import Result, in_turns, table
 
 PROFILES = Path(__file__).parents[1] / "profiles"
 
-SOLVE, STUDY, MEASURED = 0.3, 0.02, 0.15
+SOLVE, STUDY, MEASURED = 0.3, 0.02, 0.2
 """Targets, s."""
 
 
