@@ -17,6 +17,7 @@ from gearcam import laws
 from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.gears.measuring import Measuring
 from gearcam.gears.pair import Gear
+from gearcam.gears.spec import Rack
 from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.numeric.arrays import as_complex
 from gearcam.parts.blank import Blank
@@ -304,3 +305,29 @@ def test_a_pin_that_does_not_fit_is_refused_or_noted() -> None:
     (note,) = [one for one in built(design).findings if one.code == "measuring-pin"]
     assert note.where.startswith("wheel 1, teeth ")
     assert "touch both flanks" in note.message
+
+
+# --- rings and racks ------------------------------------------------------------------------------
+
+
+def test_between_pins_of_a_round_ring() -> None:
+    """The space of a ring is the tooth of a wheel: pins push outwards from its thickness."""
+    z, module, pin, alpha = 48, 2.0, 3.5, math.radians(20)
+    made = job(laws.Constant(), (24, z), module=module, internal=True)
+    wanted = math.tan(alpha) - alpha + math.pi / (2 * z) - pin / (module * z * math.cos(alpha))
+    low, high = 0.0, 1.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if math.tan(middle) - middle < wanted else (low, middle)
+    across = module * z * math.cos(alpha) / math.cos(low)
+    assert made.measures(2, pin)["over_pins_mm"] == pytest.approx(across - pin, abs=EXACT)
+
+
+def test_over_a_pin_and_the_back_of_a_straight_rack() -> None:
+    rack = Rack(addendum=0.9, dedendum=1.25)
+    plain = job(laws.RackLaw(r1="1"), (24, 30), module=2.0, backlash=0.06, rack=rack)
+    barred = built(plain.design.with_({"bar.height_mm": 20}))  # from the back to the tips
+    alpha, half = math.radians(20), 0.5 * math.pi + 0.25 * 0.06
+    outwards = (1.75 / math.cos(alpha) - half) / math.tan(alpha)
+    over = barred.measures(2, 3.5)["over_pins_mm"][:-1]
+    assert over == pytest.approx(np.full(len(over), 18.2 + outwards + 1.75), abs=EXACT)

@@ -51,10 +51,7 @@ _MORE: Final = np.arange(-6, 7)
 """Teeth more than those that are touched at the middle of their flanks: all possible ones."""
 
 _TOUCH: Final = 1e-9
-"""Share of a reading by which other teeth may reach beyond the jaws: rounding."""
-
-_JAW: Final = 0.25
-"""Thickness of a jaw, and depth below the contact that it does not need, in modules."""
+"""Share of a reading by which the ends of flanks may reach beyond the jaws: rounding."""
 
 _ROUND: Final = 1e-9
 """Relative change of the curvature from cell to cell on an arc of a circle: rounding."""
@@ -144,7 +141,7 @@ def _on_arcs(outline: Outline, cells: _Cells, whole: Ints) -> tuple[Ints, Array]
 
 
 def _spans(outline: Outline, pairs: Ints, rolls: Array, place: Ints) -> Spans:
-    """Return the readings at common normals, without those at which jaws would meet other teeth."""
+    """Return the readings at common normals of convex flanks over two teeth or more."""
     first, last = pairs
     toothing, flanks, z = outline.toothing, outline.flanks, len(outline.toothing.numbers)
     cosine = math.cos(toothing.cutter.alpha)
@@ -166,32 +163,11 @@ def _spans(outline: Outline, pairs: Ints, rolls: Array, place: Ints) -> Spans:
     for end in (low[flank], high[flank]):  # a flank that turns concave farther on lifts the jaw
         beyond = SIDES * (np.conj(normal) * (end - contact)).real
         kept &= (beyond <= _TOUCH * reading).all(axis=0)
-    for row in np.flatnonzero(kept & (place >= 0)):
-        of = np.arange(first[row], first[row] + teeth[row]) % z
-        tips = high[np.append(of, z + of)]
-        kept[row] = _free(outline, contact[:, row], normal[row], tips)
     order = np.flatnonzero(kept)
     order = order[np.lexsort((off[order], place[order]))]
     first, last = np.array(toothing.numbers)[pairs]
     values: tuple[Any, ...] = (first, last, teeth, reading, contact, rocked, off, place)
     return Spans(*(one[..., order] for one in values))
-
-
-def _free(outline: Outline, contact: Plane, normal: complex, tips: Plane) -> bool:
-    """Return whether thin jaws reach two points of contact, and the `tips` are between them."""
-    toothing = outline.toothing
-    last, first = contact
-    along = (np.conj(normal) * (tips - first)).real
-    size = abs(last - first)
-    if along.min() < -_TOUCH * size or along.max() > size * (1.0 + _TOUCH):
-        return False
-    least, thick = outline.chord_error, _JAW * toothing.pitch / math.pi
-    for place, outwards in ((last, normal), (first, -normal)):
-        aside = (np.conj(outwards) * (outline.points - place)).real
-        above = (np.conj(toothing.turn * normal) * (outline.points - place)).real
-        if ((aside > least) & (aside < thick) & (above > thick)).any():
-            return False
-    return True
 
 
 class _Cells(NamedTuple):
