@@ -149,6 +149,16 @@ FINISHED = {
     "open": lambda: profile("furnace_door"),
     "rack": lambda: job(laws.RackLaw(r1="1 + 0.2*cos(2*phi1)"), (40, 60), module=2.0),
     "stepped": lambda: profile("stepped_ellipse"),
+    "half concave flanks": lambda: job(
+        laws.Phases(
+            shape="quintic",
+            knots=tuple(map(math.radians, (0.0, 69.2486, 232.747, 360.0))),
+            ratios=(0.353377, "solve", 0.358213, 0.353377),
+        ),
+        (18, 54),
+        module=0.2,
+        tolerance=1e-4,
+    ),
 }
 
 
@@ -301,6 +311,10 @@ def test_a_pin_that_does_not_fit_is_refused_or_noted() -> None:
     for wrong in (0.0, -1.0, "3"):
         with pytest.raises(DesignError):
             made.measures(1, wrong)  # pyright: ignore
+    thick = made.gear1.measuring.over.pins(5.85)  # at some spaces only
+    both = thick.measured & thick.measured[thick.opposite]
+    assert 0 < both.sum() < thick.measured.sum()
+    assert (np.isfinite(thick.over) == both).all()
     design = made.design.with_({"output.pin_diameter_mm": [2.16, 3.5]})
     (note,) = [one for one in built(design).findings if one.code == "measuring-pin"]
     assert note.where.startswith("wheel 1, teeth ")
