@@ -345,3 +345,18 @@ def test_over_a_pin_and_the_back_of_a_straight_rack() -> None:
     outwards = (1.75 / math.cos(alpha) - half) / math.tan(alpha)
     over = barred.measures(2, 3.5)["over_pins_mm"][:-1]
     assert over == pytest.approx(np.full(len(over), 18.2 + outwards + 1.75), abs=EXACT)
+
+
+def test_an_arc_is_one_place() -> None:
+    """Two arcs of circles, joined smoothly: conditions nearly hold beyond their ends."""
+    gear = profile("two_speeds").gear1
+    spans, module, alpha = gear.measuring.spans, gear.pair.module, math.radians(20)
+    assert set(spans.place) == {-2, -1, 0, 1, 2, 3}
+    for place, phi in ((-1, 60.0), (-2, 240.0)):  # those of round wheels of these radii
+        radius = float(np.abs(gear.toothing.frames(np.radians([phi])).p[0]))
+        for k in set(spans.teeth[spans.place == place].tolist()):
+            arcs = (k - 0.5) * math.pi + 2.0 * radius / module * (math.tan(alpha) - alpha)
+            here = spans.reading[(spans.place == place) & (spans.teeth == k)]
+            assert here == pytest.approx(
+                np.full(len(here), module * math.cos(alpha) * arcs), abs=EXACT
+            )

@@ -47,6 +47,10 @@ _EXACT: Final = 1e-10
 _APART: Final = 1e-7
 """Distance of two places, over the length of the centrode, from which they are two."""
 
+_STEADY: Final = 1e-5
+"""Change by rocking, mm/rad^2 over the length of the centrode, below which a place belongs to an
+arc; above the inverse it is where an arc joins a straight stretch."""
+
 _MORE: Final = np.arange(-6, 7)
 """Teeth more than those that are touched at the middle of their flanks: all possible ones."""
 
@@ -76,7 +80,7 @@ class Spans(NamedTuple):
     off : array
         Distance of the contacts from the middle of their flanks, 0 to 1.
     place : int array
-        Number of the place on the centrode; -1 on arcs of circles.
+        Number of the place on the centrode; of arcs of circles -1, -2 and so on.
     """
 
     first: Ints
@@ -100,28 +104,27 @@ def find_spans(outline: Outline) -> Spans:
     toothing = outline.toothing
     z, flanks = len(toothing.numbers), outline.flanks
     whole = np.arange(z)[toothing.whole]
-    teeth, rolls, places = np.empty((2, 0), dtype=np.int64), np.empty((2, 0)), np.empty((2, 0))
+    on_arcs, rolls, places = np.empty((3, 0), dtype=np.int64), np.empty((2, 0)), np.empty((2, 0))
     if not (toothing.track.slides or toothing.track.ring):
         cells = _Cells.of(toothing)
         places = _isolated(toothing, cells)
-        teeth, rolls = _on_arcs(outline, cells, whole)
+        on_arcs, rolls = _on_arcs(outline, cells, whole)
     touched = []
     for at, side, roll in ((z + whole, -1.0, places[1]), (whole, 1.0, places[0])):
         reach = side * _within(toothing, flanks.sf[at, None] - roll)
         touched.append((flanks.lowest[at, None] <= reach) & (reach <= flanks.highest[at, None]))
     first, last, place = np.nonzero(touched[0][:, None] & touched[1])
-    teeth = np.append(np.stack([whole[first], whole[last]]), teeth, axis=1)
-    rolls = np.append(places[:, place], rolls, axis=1)
-    return _spans(outline, teeth, rolls, np.append(place, np.full(teeth.shape[1] - len(place), -1)))
+    found = np.append(np.stack([whole[first], whole[last], place]), on_arcs, axis=1)
+    return _spans(outline, found, np.append(places[:, place], rolls, axis=1))
 
 
 def _on_arcs(outline: Outline, cells: _Cells, whole: Ints) -> tuple[Ints, Array]:
-    """Return first and last teeth, and rolls a and b, mm, of all readings on arcs, (2, n) each."""
+    """Return first and last teeth and places (3, n), rolls a and b (2, n), mm, of those on arcs."""
     toothing, flanks, z = outline.toothing, outline.flanks, len(outline.toothing.numbers)
-    found: dict[tuple[int, int], tuple[float, float]] = {}
+    found: dict[tuple[int, int], tuple[float, ...]] = {}
     first = np.repeat(whole, len(_MORE))
     low, high, sf = (one[z + first] for one in (flanks.lowest, flanks.highest, flanks.sf))
-    for start, stop, kappa in cells.arcs(toothing.cutter.alpha):
+    for arc, (start, stop, kappa) in enumerate(cells.arcs(toothing.cutter.alpha), start=1):
         between = 2.0 * toothing.cutter.alpha / kappa
         # of whole pitches, so many that both contacts are near the middle of their flanks
         steps = np.rint((low + high - 2.0 * toothing.half_tooth + between) / toothing.pitch)
@@ -134,15 +137,15 @@ def _on_arcs(outline: Outline, cells: _Cells, whole: Ints) -> tuple[Ints, Array]
         there &= (start <= b) & (b + between <= stop) & (low <= reach) & (reach <= high)
         far = last[there]
         there[there] = (flanks.lowest[far] <= reach[there]) & (reach[there] <= flanks.highest[far])
-        teeth = zip(first[there].tolist(), last[there].tolist(), strict=True)
-        found |= {pair: (roll + between, roll) for pair, roll in zip(teeth, b[there], strict=True)}
-    pairs = np.array([*found], dtype=np.int64).reshape(-1, 2).T
-    return pairs, np.array([*found.values()]).reshape(-1, 2).T
+        rows = zip(first[there].tolist(), last[there].tolist(), b[there].tolist(), strict=True)
+        found |= {(one, other): (-arc, roll + between, roll) for one, other, roll in rows}
+    table = np.array([(*teeth, *rest) for teeth, rest in found.items()]).reshape(-1, 5).T
+    return table[:3].astype(np.int64), table[3:]
 
 
-def _spans(outline: Outline, pairs: Ints, rolls: Array, place: Ints) -> Spans:
+def _spans(outline: Outline, found: Ints, rolls: Array) -> Spans:
     """Return the readings at common normals of convex flanks over two teeth or more."""
-    first, last = pairs
+    first, last, place = found
     toothing, flanks, z = outline.toothing, outline.flanks, len(outline.toothing.numbers)
     cosine = math.cos(toothing.cutter.alpha)
     frames = toothing.frames(toothing.track.angle(rolls))
@@ -152,9 +155,7 @@ def _spans(outline: Outline, pairs: Ints, rolls: Array, place: Ints) -> Spans:
     normal = toothing.normals(frames, SIDES)[0]
     chord = np.abs(frames.p[0] - frames.p[1])
     reading = chord + cosine * reach.sum(axis=0)
-    with np.errstate(divide="ignore"):
-        rocked = 0.5 * (math.sin(toothing.cutter.alpha) * (1.0 / frames.kappa).sum(axis=0) - chord)
-    rocked = np.where(place < 0, 0.0, rocked)
+    rocked = np.where(place < 0, 0.0, _rocked(toothing, rolls))
     low, high = flank_ends(outline)
     under, over = np.abs(contact - low[flank]), np.abs(contact - high[flank])
     off = np.abs((under - over) / (under + over)).max(axis=0)
@@ -164,8 +165,8 @@ def _spans(outline: Outline, pairs: Ints, rolls: Array, place: Ints) -> Spans:
         beyond = SIDES * (np.conj(normal) * (end - contact)).real
         kept &= (beyond <= _TOUCH * reading).all(axis=0)
     order = np.flatnonzero(kept)
-    order = order[np.lexsort((off[order], place[order]))]
-    first, last = np.array(toothing.numbers)[pairs]
+    order = order[np.lexsort((first[order], off[order].round(9), place[order]))]
+    first, last = np.array(toothing.numbers)[found[:2]]
     values: tuple[Any, ...] = (first, last, teeth, reading, contact, rocked, off, place)
     return Spans(*(one[..., order] for one in values))
 
@@ -253,14 +254,22 @@ def _isolated(toothing: Toothing, cells: _Cells) -> Array:
     rolls, exact = _common_normals(toothing, middle.s[pairs], size[pairs])
     rolls = rolls[:, exact & (np.abs(rolls - middle.s[pairs]) <= _NEAR * size[pairs]).all(axis=0)]
     close = _APART * length
-    for start, stop, _ in cells.arcs(alpha):  # roots at the ends of arcs
-        b = (rolls[1] - start + close) % length if toothing.closed else rolls[1] - start + close
-        rolls = rolls[:, (b < 0.0) | (b + rolls[0] - rolls[1] > stop - start + 2.0 * close)]
+    if any(cells.arcs(alpha)):  # where an arc ends smoothly, conditions nearly hold beyond it too
+        rocked = np.abs(_rocked(toothing, rolls)) / length
+        rolls = rolls[:, (rocked > _STEADY) & (rocked < 1.0 / _STEADY)]
     if toothing.closed:
         rolls -= (rolls[1] + close) // length * length
     rolls = rolls[:, np.lexsort(rolls)]
     new = (np.abs(np.diff(rolls, prepend=np.inf)) > close).any(axis=0)
     return rolls[:, new]
+
+
+def _rocked(toothing: Toothing, rolls: Array) -> Array:
+    """Return by how much readings change, by the square of the angle of the jaws, mm/rad^2."""
+    frames = toothing.frames(toothing.track.angle(rolls))
+    with np.errstate(divide="ignore"):
+        sizes = math.sin(toothing.cutter.alpha) * (1.0 / frames.kappa).sum(axis=0)
+    return 0.5 * (sizes - np.abs(frames.p[0] - frames.p[1]))
 
 
 def _common_normals(toothing: Toothing, rolls: Array, longest: Array) -> tuple[Array, Mask]:

@@ -276,10 +276,10 @@ def _gear(result: GearPairResult, gear: Gear) -> Tree:
 _MEASURED: Final = {
     "center_radius_mm": "pin's centre from the axis",
     "over_pins_mm": "over two pins",
-    "chord_mm": "pitch chord of a tooth",
-    "chord_depth_mm": "depth of the pitch chord",
+    "chord_mm": "pitch chord",
+    "chord_depth_mm": "pitch chord, depth",
     "constant_chord_mm": "constant chord",
-    "constant_chord_depth_mm": "depth of the constant chord",
+    "constant_chord_depth_mm": "constant chord, depth",
 }
 """Columns of what is measured whose ends are facts, with their labels."""
 
@@ -306,8 +306,8 @@ def _spans(gear: Gear) -> Iterator[Tree]:
         places.setdefault(place, number)
     for number in places.values():
         first, last, teeth = (int(one[number]) for one in (spans.first, spans.last, spans.teeth))
-        where = f"{teeth} teeth" if anywhere else f"teeth {first} to {last}"
-        span = Fact(float(spans.reading[number]), f"span over {where}")
+        where = f"over {teeth} teeth" if anywhere else f"teeth {first} to {last}"
+        span = Fact(float(spans.reading[number]), f"span {where}")
         yield {"first": first, "last": last, "teeth": teeth, "span_mm": span}
 
 
