@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, fields
 from typing import Any, Final, TypeGuard
 
 from gearcam.base.brought import group_of
+from gearcam.base.errors import GearcamError
 from gearcam.base.quantities import COUNT, LENGTH, LONGEST, NONE, param
 from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.base.rules import Breach, Rule, Values, at_most, only_with
@@ -253,7 +255,9 @@ def _load_faults(
         if slides and one.column and not one.slides:
             message = f"has {one.column}, but a rack does not turn"
             yield Fault((*key, "file"), message, one.file, "a column force_n")
-        variable = one.read(one.formula)[0] if one.formula is not None else "phi1"
+        variable = "phi1"
+        with suppress(GearcamError):  # one that cannot be read is refused by itself
+            variable = one.read(one.formula)[0] if one.formula is not None else variable
         if on_rack and variable != "phi1":
             message = f"a rack has no {variable}"
             yield Fault((*key, "formula"), message, one.formula, "a formula of phi1")

@@ -12,7 +12,7 @@ import pytest
 import shapely
 
 import gearcam
-from gearcam.base.errors import InfeasibleError
+from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.spec import Rack
 from gearcam.kinds.gear_pair.result import GearPairResult
@@ -21,7 +21,7 @@ from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.phases import Phases
 from gearcam.laws.ratio.shapes import RoundedPolygon
 from gearcam.laws.ratio.span import ONE_LOBE
-from helpers_pairs import job
+from helpers_pairs import job, profile
 
 TURN = 2 * math.pi
 
@@ -197,3 +197,8 @@ def test_the_shortest_way_of_a_door_is_named() -> None:
     door(shortest * (1 + 1e-9))
     with pytest.raises(InfeasibleError):
         door(shortest * 0.99)
+
+
+def test_a_load_whose_formula_cannot_be_read_is_refused() -> None:
+    with pytest.raises(DesignError, match="unknown name 'floor'"):
+        profile("ellipse").design.with_({"load": [{"on": "wheel2", "formula": "floor(phi1)"}]})
