@@ -39,5 +39,8 @@ def jaw_misfits(measuring: Measuring, gear: Gear) -> np.ndarray:
             start, stop = ends[np.flatnonzero(teeth == tooth)[0]]
             own = np.arange(start, stop + 1 + len(points) * (stop < start)) % len(points)
             reach.append((along * points[own]).real)
-        off.append(reach[0].max() - reach[1].min() - spans.reading[number])
+        # the first and the last vertex of a tooth may be those of its fillets
+        most = reach[0][1:-1].max() - reach[1][1:-1].min() - spans.reading[number]
+        least = reach[0].max() - reach[1].min() - spans.reading[number]
+        off.append(most if most > 0.0 else min(least, 0.0))
     return np.array(off)
