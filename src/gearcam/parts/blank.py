@@ -262,11 +262,6 @@ class ShaftBlank(ShortRepr, Fitted):
         return float((floor**2 + 0.25 * sized.keyway_width**2) ** 0.5)
 
     @property
-    def core_reach(self) -> float:
-        """Largest radius of bore and hub, mm."""
-        return max(self.bore_reach, 0.5 * self.hub_diameter)
-
-    @property
     def plain(self) -> bool:
         """Whether it has a round bore, and nothing else that is made."""
         sized = self.sized
