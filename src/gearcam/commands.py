@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 from gearcam import build, remedies
 from gearcam.base.errors import DesignError, InfeasibleError, MissingExtraError, Problem, WriteError
+from gearcam.base.inches import told
 from gearcam.console import (
     DEBUG,
     all_lines,
@@ -170,7 +171,7 @@ def _act(result: Result, file: str, done: str, action: Action, start: float) -> 
         with progress_bar(file) as progress:
             written = action(result, progress)
     except InfeasibleError as error:
-        complain(refusal_text(error, file, done))
+        complain(refusal_text(told(error, result.design.units), file, done))
         for line in remedy_lines(remedies(result, error)):
             complain(f"  {line}")
         return IMPOSSIBLE

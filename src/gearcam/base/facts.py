@@ -11,7 +11,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
@@ -60,13 +60,14 @@ _UNITS: Final = {
     "_mm3": "mm3",
     "_mm2": "mm2",
     "_mm": "mm",
+    **{f"_in{end}": f"in{end.replace('_', '/')}" for end in ("_s3", "_s2", "_s", "2", "3", "")},
     "_deg": "deg",
     "_rad": "rad",
     "_kg": "kg",
 }
 """Units by the ends of names, longer ends first."""
 
-_PER: Final = re.compile(r"(?:_(mm|deg|rad))?_per_((?:rad|mm)\d?)$")
+_PER: Final = re.compile(r"(?:_(mm|in|deg|rad))?_per_((?:rad|mm)\d?)$")
 """Ends of names of derivatives by an angle or a length: ``velocity_mm_per_rad``."""
 
 _METHODS: Final = "accuracy.how."
@@ -302,6 +303,11 @@ class Facts(Mapping[str, Any]):
     def repeating(self, keys: Mapping[str, str]) -> Facts:
         """Return the facts, found also by the `keys` that they repeat, given by the facts."""
         return Facts(self._tree, self._headline, self._title, keys)
+
+    def changed(self, tree: Callable[[Tree], Tree], name: Callable[[str], str]) -> Facts:
+        """Return the facts of a changed `tree`, in which names are what `name` makes of them."""
+        keys = {name(fact): name(key) for fact, key in self._repeated.items()}
+        return Facts(tree(dict(self._tree)), list(map(name, self._headline)), self._title, keys)
 
     def __repr__(self) -> str:
         return line(type(self).__name__, [*self.headline, f"{len(self)} facts"])

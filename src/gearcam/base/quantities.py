@@ -86,6 +86,9 @@ ANGLE_PER_RAD2: Final = Quantity("_deg_per_rad2", math.pi / 180.0, "deg/rad2")
 
 _SUFFIXES: Final = {
     one.suffix: one.unit for one in [*globals().values()] if isinstance(one, Quantity)
+} | {
+    one.suffix.replace("_mm", "_in"): one.unit.replace("mm", "in")
+    for one in (LENGTH, SPEED, SPEED_PER_MINUTE)
 }
 
 

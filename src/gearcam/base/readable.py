@@ -31,7 +31,7 @@ ERROR_DIGITS: Final = 2
 _DIGITS: Final = 4
 """Significant digits of a number, one more where it begins with 1."""
 
-_FINEST: Final[Mapping[str, int]] = {"mm": 3, "deg": 2}
+_FINEST: Final[Mapping[str, int]] = {"mm": 3, "in": 4, "deg": 2}
 """Decimals of what is made and set, within `_DIGITS` and one more digit."""
 
 _WRITTEN: Final = 5

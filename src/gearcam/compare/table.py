@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.facts import NamedFact, lined_up, told_alike
+from gearcam.base.inches import UNITS, told
 from gearcam.compare.variants import Variant
 from gearcam.console import wrapped
 
@@ -59,9 +60,11 @@ def rows(variants: Sequence[Variant], *, every: bool = False) -> tuple[Row, ...]
     results = [one.result for one in variants if one.refusal is None]
     if not results:
         return ()
+    units = {one.design.files_in for one in results}
+    told_of = [told(one.facts, min(units, key=UNITS.index)) for one in results]
     columns = [
-        {fact.name: fact for fact in (one.facts.quantities() if every else one.facts.leading())}
-        for one in results
+        {fact.name: fact for fact in (one.quantities() if every else one.leading())}
+        for one in told_of
     ]
     names = dict.fromkeys(name for facts in columns for name in facts)
     findings = []

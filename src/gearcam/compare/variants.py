@@ -11,6 +11,7 @@ from typing import Any, Final
 from gearcam import build
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import DesignError, GearcamError, Problem
+from gearcam.base.inches import told
 from gearcam.designs import Design, load
 from gearcam.designs.design import path_of
 from gearcam.designs.faults import show
@@ -158,5 +159,5 @@ def _built(label: str, design: Design) -> Variant:
         _ = result.facts, result.findings
         scene = result.scene()
     except GearcamError as error:
-        return Variant(label=label, result=result, refusal=error)
+        return Variant(label=label, result=result, refusal=told(error, design.units))
     return Variant(label=label, result=result, scene=scene)

@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 from gearcam.base.display import cut
 from gearcam.base.errors import DesignError, InfeasibleError, Problem
 from gearcam.base.findings import Limits
+from gearcam.base.inches import UNITS, changes_in, customary
 from gearcam.base.quantities import FILE_KEYS
 from gearcam.base.reading import UnreadableError, read
 from gearcam.base.two_names import key_of
@@ -62,6 +63,8 @@ class Design:
         Name of the design and of its output folder: letters, digits, ``_ - .``
     source : str
         The design file; empty for a design made in Python.
+    units : {"mm", "inch"}
+        Those of the design file (see `gearcam.base.inches`); values in Python are in mm.
     limits : mapping of str to float or tuple of float
         Limits of checks by name, in mm and rad; others have their defaults.
     output : OutputSpec
@@ -91,6 +94,7 @@ class Design:
 
     name: str
     source: str = ""
+    units: str = UNITS[0]
     limits: Limits = field(default_factory=dict)
     output: OutputSpec = field(default_factory=OutputSpec)
     added: Mapping[str, Any] = field(default_factory=dict)
@@ -172,9 +176,14 @@ class Design:
             _ = self._token  # the copy keeps it
         return vars(self)
 
+    @property
+    def files_in(self) -> str:
+        """The units of files that are written: those of the table ``[output]``, or of the design."""
+        return self.output.units or self.units
+
     def _document(self) -> dict[str, Any]:
-        """Return its document, with which it is written where it is nested."""
-        return document_of(self)
+        """Return its document, with which it is written where it is nested: in mm, as others."""
+        return {key: one for key, one in document_of(self).items() if key != "units"}
 
     @cached_property
     def _value(self) -> tuple[str, list[Callable[..., Any]]]:
@@ -210,7 +219,7 @@ class Design:
         >>> document["pair"]["teeth"]
         [41, 41]
         """
-        document = document_of(self)
+        document = own_document(self)
         _demand(
             lambda _: False,
             document,
@@ -226,9 +235,10 @@ class Design:
         Parameters
         ----------
         changes : mapping of str to value
-            New values by dotted keys of the design file, such as ``law.ratios[1]``, in its units.
-            None leaves a key out, so that it has its default. A fact that repeats a key stands for
-            it: ``pair.rack.addendum`` for ``rack.addendum``.
+            New values by dotted keys of the design file, such as ``law.ratios[1]``, in its units; of
+            a design in inches also by keys in mm. None leaves a key out, so that it has its
+            default. A fact that repeats a key stands for it: ``pair.rack.addendum`` for
+            ``rack.addendum``.
 
         Returns
         -------
@@ -247,10 +257,15 @@ class Design:
         >>> design.law.eccentricity, round(gc.build(design).facts["pair.ratio"]["max"], 6)
         (0.2, 1.5)
         """
-        document, rule = document_of(self), "a mapping of dotted keys to values"
+        rule = "a mapping of dotted keys to values"
+        changes = instance("changes", changes, Mapping, rule)
+        units = changes.get("units", self.units)
+        document = own_document(self) if units != "mm" else document_of(self)
         left_out: list[Path] = []
-        for name, value in instance("changes", changes, Mapping, rule).items():
+        for name, value in changes.items():
             key = key_of(KINDS[self.kind].repeated, name) if isinstance(name, str) else name
+            if self.units == "inch" == units and isinstance(key, str):
+                ((key, value),) = changes_in({key: value}).items()
             place: Any = document
             step: str | int = ""
             try:
@@ -390,6 +405,8 @@ def document_of(design: Design) -> dict[str, Any]:
     """
     kind = KINDS[design.kind]
     document: dict[str, Any] = {"kind": kind.name, "name": design.name}
+    if design.units != UNITS[0]:
+        document["units"] = design.units
     titles = kind.titles_with(design.added)
     parts = {one: getattr(design, one) for one in titles if one not in kind.nodes}
     plain = {
@@ -412,9 +429,15 @@ def document_of(design: Design) -> dict[str, Any]:
     return document
 
 
+def own_document(design: Design) -> dict[str, Any]:
+    """Return the same in the units of the `design`."""
+    document = document_of(design)
+    return customary(document) if design.units == "inch" else document
+
+
 def summary_of(design: Design) -> dict[str, Any]:
     """Return the document of a `design` with Python functions replaced by their names."""
-    return json.loads(json.dumps(document_of(design), default=_function_name))
+    return json.loads(json.dumps(own_document(design), default=_function_name))
 
 
 def functions_in(part: Any, path: Path = ()) -> Iterator[tuple[Path, tuple[Function, ...]]]:
@@ -573,6 +596,7 @@ def hash_of(design: Design) -> str:
             document.pop(title, None)
     for key in ("files", *(() if asked else ("studies",))):
         del document["output"][key]
+    document["output"] |= {"units": design.files_in} if design.files_in != UNITS[0] else {}
     document.pop("limits", None)
     for path, inner in nested_designs(design):
         place: Any = document

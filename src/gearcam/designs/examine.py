@@ -16,9 +16,11 @@ from pathlib import Path as FilePath
 from typing import Any, Final
 
 from gearcam.base.errors import DesignError
+from gearcam.base.inches import UNITS, metric
 from gearcam.base.quantities import REQUIRED
 from gearcam.base.reading import UnreadableError, read
 from gearcam.designs.faults import MISSING, TOO_DEEP, Fault, dotted, is_deep, quoted, show
+from gearcam.designs.in_inches import as_in_file
 from gearcam.designs.kind import (
     KINDS,
     OF_MANY,
@@ -47,6 +49,8 @@ _RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 _LONGEST_NAME: Final = 100
 _LONGEST_ENCODED: Final = 200
 """Largest length of a name in UTF-8, bytes; file systems allow 255."""
+
+_AT_TOP: Final = "this key belongs at the top of the file, above all tables"
 
 MOST_NESTED: Final = 4
 """Largest number of files of which each nests the next."""
@@ -92,6 +96,26 @@ def examine(document: Mapping[str, Any], *, stem: str = "", place: Place | None 
     if is_deep(document):
         outcome.faults.append(Fault((), TOO_DEEP))
         return outcome
+    units = document.get("units", UNITS[0])
+    if units not in UNITS:
+        rule, hint = quoted(UNITS), "" if str(units)[:2] != "in" else 'write units = "inch"'
+        outcome.faults.append(Fault(("units",), f"{show(units)} is not a unit", units, rule, hint))
+    if units == UNITS[0]:
+        outcome = _of_metric(document, stem, place)
+    elif not outcome.faults:
+        in_mm, twice = metric(document)
+        outcome = _of_metric(in_mm, stem, place)
+        outcome.faults = [
+            *(Fault(at, f"is given beside {key}", allowed="one of them") for at, key in twice),
+            *(as_in_file(one, document) for one in outcome.faults),
+        ]
+    outcome.parts["units"] = units
+    return outcome
+
+
+def _of_metric(document: Mapping[str, Any], stem: str, place: Place | None) -> Examined:
+    """Return the outcome of a document in mm (see `examine`)."""
+    outcome = Examined()
     unknown = list(_kind_faults(document))
     kind, meant = _as_meant(document)
     if kind is None:
@@ -280,10 +304,12 @@ def home_of(kind: DesignKind, key: str, value: Any) -> str:
         Its value. What this says comes first: a word such as "swinging", or true for a key that is
         such a word.
     """
+    if key == "units":
+        return _AT_TOP
     if words := keyed(key if value is True else value, kind.words):
         return f"did you mean {words}?"
     if key in ("kind", "name"):
-        return "this key belongs at the top of the file, above all tables"
+        return _AT_TOP
     # the first of several tables is the likeliest; those whose keys a word chooses load all laws
     homes = (homes_of(kind.node(title), title) for title in (*kind.tables, *kind.nodes))
     return next((found[key] for found in homes if key in found), "")
@@ -359,7 +385,7 @@ def _top_faults(document: Mapping[str, Any], kind: DesignKind) -> Iterator[Fault
     unknown = (key for key in document if key not in titles)
 
     def hint_of(key: str) -> str:
-        hint = did_you_mean(key, ("kind", "name")) or home_of(kind, key, document[key])
+        hint = did_you_mean(key, ("kind", "name", "units")) or home_of(kind, key, document[key])
         hint = hint or _owners("table", kind, lambda other: key in other.titles)
         return hint or key_hint(key, titles) or _near_home(kind, key, STRONG)
 

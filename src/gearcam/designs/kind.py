@@ -289,7 +289,7 @@ class DesignKind:
     @property
     def titles(self) -> tuple[str, ...]:
         """The top-level keys and tables of a file of this kind."""
-        return ("kind", "name", *self.tree, "limits", *OF_MANY)
+        return ("kind", "name", "units", *self.tree, "limits", *OF_MANY)
 
     @property
     def formats(self) -> Collection[str]:

@@ -77,15 +77,16 @@ def measure_hint(
     classes : bool
         Whether the key takes classes of ISO 286 for holes.
     """
-    text, of_length = typed(text.strip()), unit == "mm"
+    text, of_length = typed(text.strip()), unit in ("mm", "in")
     text = _OF_SHAFT.sub("", text) if classes else text
     if of_length and (screw := _SCREW.fullmatch(text)):
         nominal = float(screw[1])
         size, hole = f"M{formatted(nominal)}", _CLEARANCE.get(nominal)
         means = {hole: f"the hole for {size} (ISO 273, medium)"} if hole else {}
-        return _screw_hint(size, {**means, nominal: "its nominal diameter"}, fits, key)
+        means |= {nominal: "its nominal diameter"}
+        return _screw_hint(size, _sizes_in(unit, means), fits, key)
     if of_length and (screw := _INCH_SCREW.fullmatch(text)) and screw["under"] != "0":
-        return _screw_hint(text, _of_inch_screw(screw), fits, key)
+        return _screw_hint(text, _sizes_in(unit, _of_inch_screw(screw)), fits, key)
     found = _MEASURE.fullmatch(text)
     if found is None or found["under"] == "0":
         return ""
@@ -161,6 +162,13 @@ def _screw_hint(size: str, means: dict[float, str], fits: Callable[[float], bool
         if fits(share * value)
     ]
     return f"{size}: write {', or '.join(named)}" if named else ""
+
+
+def _sizes_in(unit: str, means: dict[float, str]) -> dict[float, str]:
+    """Return sizes in mm, with what they are, in the unit of a key."""
+    if unit == "mm":
+        return means
+    return {size / 25.4: words.replace("in mm ", "") for size, words in means.items()}
 
 
 def _of_inch_screw(screw: re.Match[str]) -> dict[float, str]:

@@ -7,6 +7,7 @@ from typing import Any, Final
 
 from gearcam.base.brought import Words, group_of
 from gearcam.base.display import ShortRepr
+from gearcam.base.inches import UNITS
 from gearcam.base.kinds import kind_studies
 from gearcam.base.quantities import ANGLE, FINEST, LENGTH, TEXT, allowance, param
 from gearcam.base.rules import distinct, excluded
@@ -64,6 +65,8 @@ class OutputSpec(ShortRepr):
         Largest distance of an outline from the true curve.
     kerf : float, mm
         Width of the cut.
+    units : {"mm", "inch"} or None
+        Unit of lengths in files; None: that of the design.
     dxf_curves, dxf_version : str
         How outlines are drawn, and the version of the files.
     process : str
@@ -83,6 +86,13 @@ class OutputSpec(ShortRepr):
     kerf: float = allowance(
         doc="width of the cut; cutting paths in dxf and cut-svg are offset from the part by half "
         "of it",
+    )
+    units: str | None = param(
+        TEXT,
+        default=None,
+        choices=UNITS,
+        example="inch",
+        doc="unit of lengths in files; if left out that of the design. Drawings are in mm",
     )
     dxf_curves: str = param(
         TEXT,

@@ -9,6 +9,7 @@ from itertools import islice
 from typing import Any
 
 from gearcam.base.errors import MOST_LISTED
+from gearcam.base.inches import both_ways
 from gearcam.base.rules import Breach, Rule, Value
 from gearcam.designs.faults import Fault, allowed, list_fault, short, show, value_fault
 from gearcam.designs.lines import Path
@@ -78,7 +79,7 @@ def faults_of(
 
     def hint_of(name: str) -> str:
         near = key_hint(name, entries, STRONG) or home(name, raw[name])
-        return near or key_hint(name, entries) or far(name)
+        return both_ways(near or key_hint(name, entries) or far(name), name, raw[name])
 
     for name, hint in hinted(unknown, hint_of):
         message = f"unknown key (its value is {show(raw[name])})"

@@ -1,4 +1,4 @@
-"""SVG for laser cutters: 1:1 in millimetres.
+"""SVG for laser cutters: 1:1, its size in the unit of files, its view box in millimetres.
 
 Laser programs go by colour and order: cuts are red hairlines, engraving is blue; first comes what
 is engraved, then inner edges, then outlines, so that no part comes loose before it is finished.
@@ -25,6 +25,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from gearcam.base.inches import file_unit
 from gearcam.base.numerals import decimal, formatted
 from gearcam.export.dxf import CURVE_PART
 from gearcam.export.svg import arc_data
@@ -92,13 +93,21 @@ def cut_svg(drawings: Sequence[Drawing], title: str, kerf: float = 0.0) -> bytes
     low, high = box(kept)
     low, high = low - complex(MARGIN, MARGIN), high + complex(MARGIN, MARGIN)
     sizes = (high - low).real, (high - low).imag
-    wide, tall = (decimal(math.ceil(size * 1e4) / 1e4, 4) for size in sizes)
-    size = f'width="{wide}mm" height="{tall}mm" viewBox="0 0 {wide} {tall}"'
+    wide, tall = (math.ceil(size * 1e4) / 1e4 for size in sizes)
+    ends = f'width="{_size(wide, 4)}" height="{_size(tall, 4)}"'
+    size = f'{ends} viewBox="0 0 {decimal(wide, 4)} {decimal(tall, 4)}"'
     remark = f"; paths are moved by half the kerf of {formatted(kerf)} mm" if kerf else ""
     # y = 0 of the paths is the upper edge of the sheet
     shift = -complex(low.real, high.imag)
-    words = f"<desc>1:1 in mm; first engrave blue lines, then cut red lines{remark}</desc>"
+    words = f"1:1 in mm; first engrave blue lines, then cut red lines{remark}"
+    words = f"<desc>{file_unit().told(words)}</desc>"
     return svg_document(size, title, [words, _ON_SCREEN, *_groups(kept, shift, decimals)])
+
+
+def _size(size: float, decimals: int) -> str:
+    """Return a size in the unit of files, in one of inches with two more decimals."""
+    unit = file_unit()
+    return decimal(size / unit.size, decimals + 2 * (unit.size != 1.0)) + unit.name
 
 
 def _groups(kept: Sequence[Feature], shift: complex, decimals: int) -> Iterator[str]:

@@ -1,6 +1,6 @@
 """DXF: drawings for cutters.
 
-R2010 or R12, millimetres, one layer per feature. Each outline is one closed polyline, of arcs
+R2010 or R12, in the unit of files, one layer per feature. Each outline is one closed polyline, of arcs
 (*bulges*) or of straight pieces, or a chain of cubic splines, one from corner to corner; openings
 and marks are circles, or polylines of exact arcs. R12, for old machines, has no splines and no
 units. The same drawing gives the same bytes.
@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
+from gearcam.base.inches import MILLIMETRES, FileUnit, file_unit
 from gearcam.base.numerals import formatted
 from gearcam.numeric.arcs import fit_closed
 from gearcam.numeric.arrays import Array, Plane, as_pairs
@@ -53,9 +54,6 @@ COLORS: Final = {
     **dict.fromkeys(drawings.ENGRAVED, BLUE),
 }
 """Colours by layer type; all others, and drawings that are for reference, are grey."""
-
-MILLIMETRES: Final = 4
-"""$INSUNITS."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -103,18 +101,26 @@ def dxf_bytes(drawing: Drawing, style: DxfStyle) -> bytes:
     bytes
         The file, UTF-8; the same for the same drawing.
     """
-    return document_text(style.version, lambda new: _fill(new, drawing, style)).encode("utf-8")
+    unit = file_unit()
+    text = document_text(style.version, lambda new: _fill(new, drawing, style), unit)
+    if style.version == "R12" and unit.size != 1.0:  # it has no unit, but comments
+        text = f"999\nlengths are in {unit.name}\n{text}"
+    return text.encode("utf-8")
 
 
-def document_text(version: str, fill: Callable[[Document], None]) -> str:
-    """Return the text of a DXF file in millimetres.
+def document_text(
+    version: str, fill: Callable[[Document], None], unit: FileUnit = MILLIMETRES
+) -> str:
+    """Return the text of a DXF file.
 
     Parameters
     ----------
     version : {"R2010", "R12"}
         Of the format.
     fill : callable
-        Fills the new document.
+        Fills the new document, in mm.
+    unit : FileUnit
+        That of the file.
 
     Returns
     -------
@@ -124,14 +130,27 @@ def document_text(version: str, fill: Callable[[Document], None]) -> str:
     from ezdxf.filemanagement import new
 
     with _fixed_dates():
-        document = new(version, units=MILLIMETRES)
+        document = new(version, units=unit.dxf)
         fill(document)
+        if unit.size != 1.0:
+            _scale(document, 1.0 / unit.size)
         # the library would register these classes in the random order of a set
         for kind in sorted(document.entitydb.dxf_types_in_use()):
             document.classes.add_class(kind)
         stream = io.StringIO()
         document.write(stream)
     return stream.getvalue()
+
+
+def _scale(document: Document, factor: float) -> None:
+    """Scale a drawing with its extents and the pattern of its dashes."""
+    from ezdxf.math import Matrix44
+
+    space = document.modelspace()
+    for entity in space:
+        entity.transform(Matrix44.scale(factor))  # type: ignore[union-attr]
+    space.reset_extents(*(factor * space.dxf.get(end) for end in ("extmin", "extmax")))
+    document.header["$LTSCALE"] = factor
 
 
 def _fill(document: Document, drawing: Drawing, style: DxfStyle) -> None:

@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from gearcam.base.inches import file_unit
 from gearcam.base.numerals import formatted
 from gearcam.base.units import factor
-from gearcam.export.dxf import MILLIMETRES
 from gearcam.export.dxf_pieces import JOINED, DrawnPiece, DxfError, entities_of, joined, pieces_of
 from gearcam.numeric.arrays import Array, Plane, bounds
 from gearcam.numeric.bulges import deviation
@@ -70,13 +70,13 @@ def measure_dxf(data: bytes, contours: Sequence[Contour], known: Known | None = 
     Raises
     ------
     DxfError
-        If the file is damaged, is not in millimetres, or holds another number of closed outlines.
+        If the file is damaged, is not in the unit of files, or holds another number of closed outlines.
     """
-    document = read_dxf(data)
-    if document.dxfversion != _R12 and document.header.get("$INSUNITS") != MILLIMETRES:
-        raise DxfError("the DXF file is not in millimetres")
+    document, unit = read_dxf(data), file_unit()
+    if document.dxfversion != _R12 and document.header.get("$INSUNITS") != unit.dxf:
+        raise DxfError(f"the DXF file is not in {unit.name}")
     drawn = [own for layer, own in entities_of(document.modelspace()) if layer.endswith(CLOSED)]
-    every = joined(list(pieces_of(drawn)), _ROUNDING)
+    every = joined(list(pieces_of(drawn, scale=unit.size)), _ROUNDING)
     # a pitch curve may be open; rims are circles, which are exact
     outlines = [outline for outline in every if outline.closed and not outline.whole_circle]
     if len(outlines) != len(contours):

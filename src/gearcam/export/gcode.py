@@ -1,7 +1,7 @@
 """Programs of milling machines with a rotary axis A about X, as G-code.
 
 Only words that free controllers run alike (LinuxCNC; grbl with a fourth axis): G0, G1, G4, G17,
-G21, G40, G49, G53, G54, G61, G80, G90, G93, G94, M0, M3, M5, M30, one comment a line. Numbers have
+G20, G21, G40, G49, G53, G54, G61, G80, G90, G93, G94, M0, M3, M5, M30, one comment a line. Numbers have
 no exponent.
 
 The tool rises before anything else moves: to Z0 of the machine, which homing has put at its top.
@@ -18,11 +18,12 @@ for a place where A is already, even by rounding, may make a whole turn; it is l
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from gearcam.base.display import ShortRepr
+from gearcam.base.inches import file_unit
 from gearcam.base.numerals import decimal
 from gearcam.numeric.arrays import Array
 
@@ -72,20 +73,28 @@ class RotaryProgram(ShortRepr):
 
 
 def gcode_bytes(program: RotaryProgram) -> bytes:
-    """Write a program.
+    """Write a program in the unit of files (see `gearcam.base.inches`).
 
     Parameters
     ----------
     program : RotaryProgram
-        What it says.
+        What it says, in mm.
 
     Returns
     -------
     bytes
         ASCII.
     """
-    lines = [f"({line})" for note in program.notes for line in _wrapped(note)]
-    lines += [*_START, *_moved(program), *_END]
+    unit = file_unit()
+    notes, start = map(unit.told, program.notes), _START
+    if unit.size != 1.0:
+        *places, fine = program.decimals
+        moves = program.moves / np.array([unit.size] * 3 + [1.0])
+        decimals = [*(one + 2 for one in places), fine]
+        program = replace(program, moves=moves, decimals=decimals)
+        start = [words.replace("G21", "G20") for words in start]
+    lines = [f"({line})" for note in notes for line in _wrapped(note)]
+    lines += [*start, *_moved(program), *_END]
     return ("\n".join(lines) + "\n").encode("ascii")
 
 

@@ -1,8 +1,8 @@
 """Mesh files: STL (binary), 3MF and GLB, the latter two by trimesh, and trimesh's view of them.
 
-All three are in millimetres. STL has no unit; 3MF states it; the unit of glTF is the metre, but CAD
-programs read the plain numbers, so the GLB keeps millimetres and notes them in its scene's extras
-(``"units": "mm"``). STL and GLB have single precision: vertices are rounded first and coincident
+All three are in the unit of files (`gearcam.base.inches.file_unit`). STL has none, and says it in
+its header; 3MF states it; the unit of glTF is the metre, but CAD programs read the plain numbers,
+so the GLB keeps the unit of files and notes it in its scene's extras (``"units": "mm"``). STL and GLB have single precision: vertices are rounded first and coincident
 ones are joined, so that the file is closed as written. The same mesh gives the same bytes.
 
 Refused: meshes that are not closed, before or after rounding.
@@ -17,10 +17,12 @@ import re
 import uuid
 import zipfile
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from gearcam.base.inches import file_unit
 from gearcam.numeric.mesh import Mesh
 from gearcam.parts.solids import SolidError, libraries
 
@@ -47,7 +49,7 @@ def stl_bytes(bodies: Mapping[str, Mesh], name: str) -> bytes:
     Parameters
     ----------
     bodies : mapping of str to Mesh
-        Closed, mm, by name.
+        Closed, in the unit of files, by name.
     name : str
         The name of the part or assembly.
 
@@ -69,14 +71,14 @@ def stl_bytes(bodies: Mapping[str, Mesh], name: str) -> bytes:
     triangles["corners"] = corners
     triangles["normal"] = np.divide(normals, sizes, out=normals, where=sizes > 0.0)
     # "solid" at the start would mean the text format
-    label = f"gearcam {name} (mm)".encode("ascii", "replace")[:HEADER_LENGTH]
+    label = f"gearcam {name} ({file_unit().name})".encode("ascii", "replace")[:HEADER_LENGTH]
     count = len(triangles).to_bytes(4, "little")
     return label.ljust(HEADER_LENGTH, b"\0") + count + triangles.tobytes()
 
 
 @libraries()
 def threemf_bytes(bodies: Mapping[str, Mesh], name: str) -> bytes:
-    """Return a 3MF in millimetres; each body is an object of its name (see `stl_bytes`)."""
+    """Return a 3MF; each body is an object of its name (see `stl_bytes`)."""
     from trimesh.exchange.threemf import export_3MF
 
     return _repeatable(export_3MF(_scene(bodies, single=False)), name)
@@ -84,11 +86,11 @@ def threemf_bytes(bodies: Mapping[str, Mesh], name: str) -> bytes:
 
 @libraries()
 def glb_bytes(bodies: Mapping[str, Mesh], name: str) -> bytes:
-    """Return a GLB in millimetres; each body is a node and mesh of its name (see `stl_bytes`)."""
+    """Return a GLB; each body is a node and mesh of its name (see `stl_bytes`)."""
     from trimesh.exchange.gltf import export_glb
 
     scene = _scene(bodies)
-    scene.metadata |= {"units": "mm", "name": name}
+    scene.metadata |= {"units": file_unit().name, "name": name}
     return bytes(export_glb(scene, include_normals=False))
 
 
@@ -109,7 +111,9 @@ def mesh_bytes(kind: str, bodies: Mapping[str, Mesh], name: str) -> bytes:
     bytes
     """
     writers = {"stl": stl_bytes, "3mf": threemf_bytes, "glb": glb_bytes}
-    return writers[kind](bodies, name)
+    size = file_unit().size
+    sized = {one: replace(mesh, vertices=mesh.vertices / size) for one, mesh in bodies.items()}
+    return writers[kind](bodies if size == 1.0 else sized, name)
 
 
 @libraries()
@@ -177,7 +181,7 @@ def _single(mesh: Mesh, name: str) -> Mesh:
 
 def _repeatable(data: bytes, name: str) -> bytes:
     """Return a 3MF archive with fixed identifiers and dates instead of random ones."""
-    result = io.BytesIO()
+    result, unit = io.BytesIO(), "millimeter" if file_unit().size == 1.0 else "inch"
     with (
         zipfile.ZipFile(io.BytesIO(data)) as source,
         zipfile.ZipFile(result, "w", zipfile.ZIP_DEFLATED) as target,
@@ -189,5 +193,6 @@ def _repeatable(data: bytes, name: str) -> bytes:
                 return str(uuid.uuid5(uuid.NAMESPACE_OID, f"gearcam/{name}/{next(count)}")).encode()
 
             content = _UUID.sub(fixed, source.read(entry))
+            content = content.replace(b'unit="millimeter"', f'unit="{unit}"'.encode(), 1)
             target.writestr(zipfile.ZipInfo(entry.filename, EPOCH), content, zipfile.ZIP_DEFLATED)
     return result.getvalue()

@@ -1,6 +1,6 @@
 """STEP: exact solids for CAD and CAM programs.
 
-AP214, in millimetres. Each part is one product of its name, with a solid for each of its steps;
+AP214, in the unit of files. Each part is one product of its name, with a solid for each of its steps;
 several parts form an assembly in which each is turned and shifted to its place. Flanks, tips and
 roots are B-spline faces within the tolerance, one for each smooth piece of the outline; bores, hubs
 and marks are cylinders and planes. Cams in space are solids of bands (`step_bands`). The same parts
@@ -21,6 +21,7 @@ from contextlib import contextmanager
 from typing import Any, Final
 
 from gearcam.base.errors import MissingExtraError
+from gearcam.base.inches import file_unit
 from gearcam.export.step_bands import banded_solid
 from gearcam.export.step_shapes import occt, solids_of
 from gearcam.numeric.pose import Pose
@@ -33,7 +34,6 @@ DATE: Final = "1970-01-01T00:00:00"
 
 SETTINGS: Final[dict[str, str | int]] = {
     "write.step.schema": "AP214IS",
-    "write.step.unit": "MM",
     "xstep.cascade.unit": "MM",
     "write.step.product.name": "part",
     "write.surfacecurve.mode": 0,  # edges as curves in space only: smaller, nothing is lost
@@ -149,7 +149,8 @@ def _document() -> Iterator[Any]:
 
 def _set_all(settings: Mapping[str, str | int]) -> None:
     occt.STEPControl_Controller.Init_s()  # there are no settings before this
-    for key, value in settings.items():
+    unit = {"write.step.unit": "MM" if file_unit().size == 1.0 else "INCH"}
+    for key, value in {**settings, **unit}.items():
         text = isinstance(value, str)
         setter = occt.Interface_Static.SetCVal_s if text else occt.Interface_Static.SetIVal_s
         if not setter(key, value):

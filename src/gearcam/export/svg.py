@@ -17,6 +17,7 @@ from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
 
+from gearcam.base.inches import file_unit
 from gearcam.base.numerals import decimal
 from gearcam.numeric.arrays import Array, Plane, as_pairs, bounds
 from gearcam.numeric.bulges import bulge_pieces, divided
@@ -89,7 +90,7 @@ def svg_bytes(
         yield from (_element(feature, pixel) for feature in drawing.features)
         yield from map(_label, labels)
 
-    lines = [line for line in (title, ", ".join(notes), legend) if line]
+    lines = [title, *filter(None, map(file_unit().told, (", ".join(notes), legend)))]
     shown = [*box(drawing.features), *(corner for one in labels for corner in one.corners)]
     return picture(lines, bounds(np.array(shown)), elements).encode()
 

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.base.errors import NotFiniteError
+from gearcam.base.inches import file_unit
 from gearcam.base.numerals import SHORT, ULPS, exact
 from gearcam.numeric.arrays import Array, Plane
 
@@ -29,13 +30,20 @@ _RADII: Final = "rho"
 """Beginning of the names of columns that are radii of curvature: infinite where straight."""
 
 
+def _in_unit(name: str, values: ArrayLike) -> tuple[str, ArrayLike]:
+    """Return the name and the values of a column in the unit of files."""
+    name, factor = file_unit().column(name)
+    return name, values if factor == 1.0 else np.ma.asanyarray(values) * factor
+
+
 def table_bytes(columns: Mapping[str, ArrayLike]) -> bytes:
     """Write columns under a header line.
 
     Parameters
     ----------
     columns : mapping of str to (n,) array
-        In order; the name carries the unit's suffix, such as ``x_mm``. Texts are written in quotes
+        In mm and in order; the name carries the unit's suffix, such as ``x_mm``, or ``x_in`` in
+        files in inches. Texts are written in quotes
         if they need them.
 
     Returns
@@ -50,6 +58,7 @@ def table_bytes(columns: Mapping[str, ArrayLike]) -> bytes:
     ValueError
         If the columns differ in length, or a name holds a comma, a quote or a line break.
     """
+    columns = dict(_in_unit(name, values) for name, values in columns.items())
     bad = [name for name in columns if not name or set(name) & set(',"\r\n')]
     if bad:
         raise ValueError(f"not allowed as column names: {bad}")

@@ -14,6 +14,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from gearcam.base.inches import changes_in, unit_in
 from gearcam.base.readable import UnitScale, column, labelled, readable, scale_of
 from gearcam.numeric.arrays import Array, Plane, as_pairs
 from gearcam.numeric.pose import SpacePose
@@ -197,7 +198,7 @@ def _scale(name: str, curves: Sequence[ColouredCurve]) -> dict[str, Any]:
     }
 
 
-def chart_data(name: str, chart: Chart, driver: str) -> dict[str, Any]:
+def chart_data(name: str, chart: Chart, driver: str, units: str = "mm") -> dict[str, Any]:
     """Return the data of a chart, its axes in units that are easy to read.
 
     The axis of the driver keeps its own, as the parts move over it.
@@ -210,6 +211,8 @@ def chart_data(name: str, chart: Chart, driver: str) -> dict[str, Any]:
         The chart.
     driver : str
         Label of the driver's axis; a chart over this axis has a cursor that moves with the parts.
+    units : {"mm", "inch"}
+        Unit of lengths on the axes but that of the driver.
 
     Returns
     -------
@@ -224,7 +227,7 @@ def chart_data(name: str, chart: Chart, driver: str) -> dict[str, Any]:
         axis.
     """
     moves, own = chart.x == driver, labelled(chart.y)[1]
-    chart, factor = _in_easy_units(chart, across=not moves)
+    chart, factor = _in_easy_units(chart, across=not moves, units=units)
     low, high = chart.range
     across, up = (_significant if axis in chart.log else _digits for axis in "xy")
     return {
@@ -253,7 +256,7 @@ def chart_data(name: str, chart: Chart, driver: str) -> dict[str, Any]:
     }
 
 
-def _in_easy_units(chart: Chart, *, across: bool) -> tuple[Chart, float]:
+def _in_easy_units(chart: Chart, *, across: bool, units: str) -> tuple[Chart, float]:
     """Return a chart with its axes in units that are easy to read, and the factor of the vertical.
 
     Parameters
@@ -262,16 +265,24 @@ def _in_easy_units(chart: Chart, *, across: bool) -> tuple[Chart, float]:
         A chart.
     across : bool
         Whether the unit of the horizontal axis may change. Axes of one scale have one unit.
+    units : str
+        Unit of lengths.
     """
+
+    def scale(size: float, unit: str) -> UnitScale:
+        own, factor = unit_in(unit) if units == "inch" else (unit, 1.0)
+        return UnitScale(own, factor) if own != unit else scale_of(size, unit)
+
     sizes = [max(map(abs, chart.ends[0])), max(map(abs, chart.range))]
-    units = [labelled(label)[1] for label in (chart.x, chart.y)]
+    own = [labelled(label)[1] for label in (chart.x, chart.y)]
     if chart.equal:
         sizes = [max(sizes)] * 2
-        across = units[0] == units[1]
-    x = scale_of(sizes[0], units[0]) if across else UnitScale(units[0])
-    y = scale_of(sizes[1], units[1]) if across or not chart.equal else UnitScale(units[1])
+        across = own[0] == own[1]
+    x = scale(sizes[0], own[0]) if across else UnitScale(own[0])
+    y = scale(sizes[1], own[1]) if across or not chart.equal else UnitScale(own[1])
     if (x.factor, y.factor) == (1.0, 1.0):
         return chart, 1.0
+    keys = changes_in if units == "inch" else dict
     changed = replace(
         chart,
         x=_relabelled(chart.x, x),
@@ -279,7 +290,7 @@ def _in_easy_units(chart: Chart, *, across: bool) -> tuple[Chart, float]:
         lines=tuple(replace(one, x=x.factor * one.x, y=y.factor * one.y) for one in chart.lines),
         limits=tuple(replace(one, value=y.times(one.value)) for one in chart.limits),
         marks=tuple(replace(one, value=x.times(one.value)) for one in chart.marks),
-        handles=tuple(_scaled(one, x, y) for one in chart.handles),
+        handles=tuple(_scaled(replace(one, keys=keys(one.keys)), x, y) for one in chart.handles),
     )
     return changed, y.factor
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.errors import GearcamError
+from gearcam.base.inches import told
 from gearcam.results.parts import Files
 
 if TYPE_CHECKING:
@@ -65,7 +66,7 @@ def solids_shown(result: Result) -> dict[str, str]:
             solids = result.standing(chords)
             return {"view": view_page(solids)} if solids else {}
         except GearcamError as error:
-            refusal = str(error)
+            refusal = str(told(error, result.design.units))
     return {"refusal": refusal}
 
 

@@ -16,6 +16,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
+from gearcam.base.inches import told
 from gearcam.base.numerals import formatted, size_of
 from gearcam.report.data import chart_data, scene_data
 from gearcam.results.advice import Remedies, remedies
@@ -245,7 +246,10 @@ def document(
         "kind": result.design.kind,
         "solids": result.place_of_solids,
         "scene": _shown(result, scene) if scene else None,
-        "charts": [chart_data(name, result.chart(name), driver) for name in result.charts],
+        "charts": [
+            chart_data(name, result.chart(name), driver, result.design.files_in)
+            for name in result.charts
+        ],
         "blocks": blocks(result, measured, seek=seek),
     }
 
@@ -280,7 +284,10 @@ def draft(result: Result) -> dict[str, Any]:
         "title": result.design.name,
         "kind": result.design.kind,
         "scene": _shown(result, scene) if scene else None,
-        "leading": [chart_data(name, one, driver) for name, one in result.leading(LEADING)],
+        "leading": [
+            chart_data(name, one, driver, result.design.files_in)
+            for name, one in result.leading(LEADING)
+        ],
         "blocks": _rendered(
             DRAFTED,
             result,
@@ -351,10 +358,11 @@ def _rendered(
     names: Sequence[str], result: Result, facts: Facts, findings: Sequence[Finding], **more: Any
 ) -> dict[str, str]:
     """Return blocks by name, of some facts and findings of a result."""
+    design = result.design
     values = {
-        "title": result.design.name,
-        "facts": facts,
-        "findings": findings,
+        "title": design.name,
+        "facts": told(facts, design.files_in),
+        "findings": told(tuple(findings), design.units),
         "verdict": verdict(result, findings),
         **more,
     }
@@ -378,7 +386,7 @@ def _errors(result: Result, facts: Facts) -> Iterator[tuple[str, str]]:
     for label, names in result.main_errors:
         rows = (facts.quantity(f"accuracy.{name}") for name in names)
         largest = max(rows, key=lambda one: one.value)
-        yield label, largest.text
+        yield label, told(largest.text, result.design.files_in)
 
 
 def _pictures(result: Result) -> Iterator[tuple[str, str]]:

@@ -29,7 +29,8 @@ from gearcam.base.adjustments import (
 )
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import DesignError, InfeasibleError
-from gearcam.designs.design import Design, document_of, nested_designs, value_at
+from gearcam.base.inches import changes_in, changes_mm, told
+from gearcam.designs.design import Design, document_of, nested_designs, own_document, value_at
 from gearcam.designs.faults import dotted
 from gearcam.parts.fits import fitted, in_class_of
 from gearcam.results.kind import kind_of
@@ -301,13 +302,22 @@ class Search:
 
     @cached_property
     def document(self) -> dict[str, Any]:
-        """The design as a document."""
+        """The design as a document in mm."""
         return document_of(self.result.design)
 
     def in_class(self, changes: Changes) -> Changes:
         """Return `changes` in which sizes keep the tolerance classes that the design gives them."""
         given = {key: value_at(self.document, key) for key in changes}
         return {key: in_class_of(given[key], value) for key, value in changes.items()}
+
+    @cached_property
+    def own_document(self) -> dict[str, Any]:
+        """The design as a document in the units of its file."""
+        return own_document(self.result.design)
+
+    def own(self, changes: Changes) -> Changes:
+        """Return changes in the units of the file."""
+        return changes_in(changes) if self.result.design.units == "inch" else changes
 
     def over(self) -> bool:
         """Return whether the search must end: enough designs were built."""
@@ -318,6 +328,7 @@ class Search:
     def changed(self, changes: Changes) -> Any:
         """Return the result of the changed design; counted."""
         self.builds += 1
+        changes = self.own(changes)
         design = self.result.design.with_(changes)
         self.tried |= dict.fromkeys(changes)
         return type(self.result)(design, self.result.tolerances)
@@ -336,6 +347,7 @@ class Search:
         Changes are built once: a refusal is kept in `refused` if its reason is not that of the
         design, the codes of errors and warnings in `seen`.
         """
+        changes = self.own(changes)
         text = text_of(changes)
         if text not in self.seen and text not in self.refused:
             self._build(changes, text)
@@ -366,14 +378,14 @@ class Search:
 
     def keep(self, changes: Changes, less: Changes | None = None) -> None:
         """Add a remedy: its `changes`, and the largest smaller ones that are not enough, `less`."""
-        design = self.result.design
+        design, changes = self.result.design, self.own(changes)
         self.found.append(
             Remedy(
                 changes=changes,
                 less=less or {},
                 remaining=self.seen[text_of(changes)]["warning"],
-                moves=self.advice.moves(changes, design),
-                resized=self.advice.resized(changes, design),
+                moves=self.advice.moves(changes_mm(changes), design),
+                resized=self.advice.resized(changes_mm(changes), design),
                 design=design.with_(changes),
             )
         )
@@ -388,6 +400,7 @@ class Search:
         if self.over():
             return False
         changed = adjustment.far or adjustment.near or next(iter(adjustment.steps), {})
+        adjustment = told(adjustment, self.result.design.units)
         if self.keeping >= _FEW and self.advice.moves(changed, self.result.design):
             return False
         if adjustment.steps:
@@ -396,7 +409,7 @@ class Search:
             return self._least(lambda place: every[place - 1], range(1, len(steps) + 1))
         far = adjustment.far
         near = {
-            key: adjustment.near.get(key, fitted(value_at(self.document, key)))
+            key: adjustment.near.get(key, value_at(self.own_document, key))
             for key in {**adjustment.near, **far}
         }
         if any(value is None for value in near.values()):
@@ -446,8 +459,8 @@ class Search:
                         remedy,
                         changes=both,
                         less=together(changes, remedy.less) if remedy.less else {},
-                        moves=remedy.moves or self.advice.moves(changes, design),
-                        resized=remedy.resized or self.advice.resized(changes, design),
+                        moves=remedy.moves or self.advice.moves(changes_mm(changes), design),
+                        resized=remedy.resized or self.advice.resized(changes_mm(changes), design),
                         design=design.with_(both),
                     )
                 )
@@ -462,7 +475,7 @@ class Search:
                 return
             if self.along(adjustment):
                 continue
-            near = tidy(adjustment.near)
+            near = tidy(self.own(adjustment.near))
             if (both := for_both(adjustment)) is not None:
                 self.along(both)
             elif near and not self.over() and self.left(near) is None:
@@ -489,7 +502,11 @@ class _NestedSearch(Search):
 
     def changed(self, changes: Changes) -> Any:
         """Return the result of the outer design with `changes` of the nested one; counted there."""
-        return self.outer.changed(keyed(self.key, changes))
+        return self.outer.changed(self.keyed(changes))
+
+    def keyed(self, changes: Changes) -> Changes:
+        """Return `changes` of the nested design as those of the outer one, in its units."""
+        return self.outer.own(changes_mm(keyed(self.key, changes)))
 
     def alone(self, changes: Changes) -> Any:
         """Return the result of the nested design with `changes`; counted by the outer search."""
@@ -502,13 +519,13 @@ class _NestedSearch(Search):
 
     def hand_over(self) -> None:
         """Give the outer search what was found, as changes of its design."""
-        outer, key = self.outer, self.key
+        outer = self.outer
         for changes in self.first:
-            outer.first.append(keyed(key, changes))
+            outer.first.append(self.keyed(changes))
             if text_of(changes) in self.seen:
-                outer.seen[text_of(keyed(key, changes))] = self.seen[text_of(changes)]
+                outer.seen[text_of(self.keyed(changes))] = self.seen[text_of(changes)]
         for remedy in self.found:
-            changes = keyed(key, remedy.changes)
+            changes = self.keyed(remedy.changes)
             design = outer.result.design.with_(changes)
-            less = keyed(key, remedy.less)
+            less = self.keyed(remedy.less)
             outer.found.append(replace(remedy, changes=changes, less=less, design=design))

@@ -20,6 +20,7 @@ from gearcam.base.display import renderer
 from gearcam.base.errors import GearcamError
 from gearcam.base.facts import Facts
 from gearcam.base.findings import Finding
+from gearcam.base.inches import files_in, told
 from gearcam.base.registry import deferred
 from gearcam.base.tolerances import DEFAULT, Tolerances
 from gearcam.numeric.arguments import one_of, refused
@@ -242,7 +243,7 @@ class Result(Staged):
         try:
             (data,) = self.files(PICTURE).values()
         except GearcamError as error:
-            return renderer().refusal_picture(self.design.name, error)
+            return renderer().refusal_picture(self.design.name, told(error, self.design.units))
         return data.decode()
 
     def _repr_html_(self) -> str:
@@ -251,7 +252,7 @@ class Result(Staged):
             if REPORT in self.kind.formats:
                 return _framed(self)
         except GearcamError as error:
-            return renderer().refusal(self.design.name, error)
+            return renderer().refusal(self.design.name, told(error, self.design.units))
         lines = [f"{one.severity}, {one.code}: {one.message} {one.where}" for one in findings]
         return renderer().page(self.picture(), facts, lines)
 
@@ -384,7 +385,7 @@ class Result(Staged):
         b'phi1_deg,phi2_deg,rat'
         """
         demand_formats(self.design, (name,))
-        with self.rows.named():
+        with self.rows.named(), files_in(self.design.files_in):
             return self.kind.files[name](self, {} if measured is None else measured)
 
     @property

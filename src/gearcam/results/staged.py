@@ -12,6 +12,7 @@ from typing import Any, Self
 from gearcam.base.display import NotebookView, cut
 from gearcam.base.facts import Facts, Tree
 from gearcam.base.findings import Finding
+from gearcam.base.inches import told
 from gearcam.base.tolerances import DEFAULT, Tolerances
 from gearcam.designs.design import hash_of
 from gearcam.results.kind import Kind, kind_of
@@ -122,11 +123,14 @@ class Staged(NotebookView):
         return ()
 
     def summary(self, facts: Facts, findings: Sequence[Finding]) -> Summary:
-        """Return the summary with `facts` and `findings` of the result, or of a study."""
+        """Return the summary with `facts` and `findings` of the result, or of a study.
+
+        Facts are in the unit of files, findings in that of the design, whose keys they name.
+        """
         return Summary(
             design=self.design,
             design_hash=self.design_hash,
-            facts=facts,
-            findings=tuple(findings),
+            facts=told(facts, self.design.files_in),
+            findings=told(tuple(findings), self.design.units),
             timings=self.timings,
         )

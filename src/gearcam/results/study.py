@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from gearcam.base.display import NotebookView, cut
 from gearcam.base.facts import Facts
 from gearcam.base.findings import Finding, in_order
+from gearcam.base.inches import files_in
 from gearcam.base.pickling import pickled
 from gearcam.numeric.columns import Columns
 from gearcam.results.staged import Staged
@@ -252,9 +253,10 @@ class StudyResult(NotebookView):
 
         stem = Path(self.file).stem
         tables = {f"{stem}_{name}.csv": table for name, table in self.further.items()}
-        written = {
-            name: table_bytes(one) for name, one in {self.file: self.table, **tables}.items()
-        }
+        with files_in(self.result.design.files_in):
+            written = {
+                name: table_bytes(one) for name, one in {self.file: self.table, **tables}.items()
+            }
         return {**written, **self.pages}
 
     def to_dict(self) -> dict[str, Any]:

@@ -94,6 +94,7 @@ class Summary:
                 "format": FORMAT,
                 "name": self.design.name,
                 "kind": self.design.kind,
+                **({"units": units} if (units := self.design.files_in) != "mm" else {}),
                 **self.facts.document,
                 "hash": self.design_hash,
                 **(files or {}),

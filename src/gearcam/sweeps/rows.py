@@ -10,6 +10,7 @@ from typing import Any, Final
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import GearcamError
 from gearcam.base.findings import Finding
+from gearcam.base.inches import told
 from gearcam.designs.design import Design
 from gearcam.kinds import build
 from gearcam.results.record import Record
@@ -92,7 +93,7 @@ def measured(base: Design, number: int, values: Mapping[str, Any]) -> Built:
         facts = result.record()
         findings = result.findings_without_hints
     except GearcamError as error:
-        return row(refusal=" ".join(str(error).split()))
+        return row(refusal=" ".join(str(told(error, base.units)).split()))
     except MemoryError:
         return row(refusal=TOO_LARGE)
     except Exception as error:

@@ -13,6 +13,7 @@ from typing import Any, Final, TypeVar
 
 from gearcam import build, remedies
 from gearcam.base.errors import DesignError, GearcamError, InfeasibleError
+from gearcam.base.inches import telling
 from gearcam.base.interrupts import follow_parent
 from gearcam.console import fault_text, quieten, refusal_text, remedy_lines
 from gearcam.designs.design import Design, loads
@@ -72,7 +73,9 @@ def show(content: bytes | None, file: str) -> Reply:
         def moves(key: str, value: float) -> Collection[str] | None:
             return _needed(text, key, value, file)
 
-        return {"document": document(build(design)), "sliders": sliders(text, reads, moves)}
+        with telling(design.units):
+            shown = document(build(design))
+        return {"document": shown, "sliders": sliders(text, reads, moves)}
 
     return _reply(answer, file)
 
@@ -81,7 +84,9 @@ def _needed(text: str, key: str, value: float, file: str) -> Collection[str] | N
     """Return which numbers have to change with one; None if no design can be made with it."""
 
     def made(values: Values) -> Reply:
-        build(loads(replaced(text, values), file=file)).coarse()
+        design = loads(replaced(text, values), file=file)
+        with telling(design.units):
+            build(design).coarse()
         return {"changes": values}
 
     try:
@@ -209,7 +214,8 @@ def follow(text: str, file: str, changes: Values, last: Collection[str], exact: 
 
     def answer(values: Values) -> Reply:
         design = loads(replaced(text, values), file=file)
-        content = document(build(design)) if exact else _draft(design)
+        with telling(design.units):
+            content = document(build(design)) if exact else _draft(design)
         return {"document": content, "changes": dict(values)}
 
     reply = _reply(lambda: _first(text, changes, last, answer, file), file)
@@ -274,12 +280,13 @@ def _draft(design: Design) -> Reply:
 def _coarsely(design: Design, make: Callable[[Result], _T]) -> _T:
     """Return what `make` makes of a design with coarse chords."""
     result = build(design)
-    try:
-        return make(result.coarse())
-    except InfeasibleError as error:
-        if _CHORDS not in str(error):
-            raise
-    return make(result)  # the teeth are too small for coarse chords
+    with telling(design.units):
+        try:
+            return make(result.coarse())
+        except InfeasibleError as error:
+            if _CHORDS not in str(error):
+                raise
+        return make(result)  # the teeth are too small for coarse chords
 
 
 def _text(content: bytes | None, file: str) -> str:

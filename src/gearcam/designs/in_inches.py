@@ -1,0 +1,67 @@
+"""Faults of designs in inches: what is found in mm is told in the words of the file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from gearcam.base.inches import key_in, of_pitch, spelt_in, told
+from gearcam.base.quantities import unit_of
+from gearcam.designs.faults import MISSING, Fault, show
+from gearcam.designs.measures import measure_hint
+
+_VALUE = "\0"
+"""Stands for the value in a message while this is translated."""
+
+
+def as_in_file(fault: Fault, document: Mapping[str, Any]) -> Fault:
+    """Return a fault of a document in mm as one of the document that it was made of.
+
+    Parameters
+    ----------
+    fault : Fault
+        Its path, its value and the lengths in its words are in mm.
+    document : mapping
+        As in the file, in inches.
+
+    Returns
+    -------
+    Fault
+        With path and value of the file, and lengths in inches. One of a nested file is not changed.
+    """
+    if fault.file:
+        return fault
+    path, value = _found(fault, document)
+    key, message, allowed, hint = str((*path, "")[-2]), fault.message, fault.allowed, fault.hint
+    if MISSING in (value, fault.value):
+        value = fault.value
+    else:
+        message = message.replace(show(fault.value), _VALUE, 1)
+    if isinstance(value, str) and key_in(key) == key != fault.path[-1]:
+        hint = measure_hint(value, unit_of(key), key=key) or hint
+    else:
+        hint = told(hint, "inch")
+    return replace(
+        fault,
+        path=path,
+        value=value,
+        message=told(message, "inch").replace(_VALUE, show(value)),
+        allowed=told(of_pitch(allowed) if key == key_in("module_mm") else allowed, "inch"),
+        hint=hint,
+    )
+
+
+def _found(fault: Fault, document: Mapping[str, Any]) -> tuple[tuple[str | int, ...], Any]:
+    """Return the path of a fault in a document in inches, and what stands there, or `MISSING`."""
+    place: Any = document
+    path: list[str | int] = []
+    for step in fault.path:
+        names = [step, spelt_in(step), key_in(step)] if isinstance(step, str) else [step]
+        has = place if isinstance(place, Mapping) else ()
+        path.append(next((one for one in names if one in has), names[-1]))
+        try:
+            place = place[path[-1]]
+        except (LookupError, TypeError):
+            place = MISSING
+    return tuple(path), place
