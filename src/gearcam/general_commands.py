@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from gearcam.base.errors import Problem
+from gearcam.base.inches import UNITS
 from gearcam.commands import (
     GOOD,
     Options,
@@ -100,6 +101,8 @@ def new_options(parser: argparse.ArgumentParser) -> None:
     suggest(
         process, lambda: dict.fromkeys(one for kind in KINDS.values() for one in kind.processes)
     )
+    words = "unit of lengths in the file (default: mm)"
+    parser.add_argument("--units", choices=UNITS, default=UNITS[0], help=words)
 
 
 def new(options: Options) -> int:
@@ -113,7 +116,7 @@ def new(options: Options) -> int:
         refuse([replace(problem, hint=template_hint(kind))])
     if process is not None and (problem := process_problem(kind, process)):
         refuse([problem])
-    text = template(kind, Path(file or "").stem, process or "")
+    text = template(kind, Path(file or "").stem, process or "", options["units"])
     if file is None:
         say(text.rstrip("\n"))
         return GOOD

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, replace
@@ -50,25 +50,25 @@ _MM: Final = re.compile(
 
 _IN: Final = re.compile(r"_in(?=(?:_s|_min|_per_rad\d?)?(?!\w))")
 
-_NUMBER: Final = r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
-_SET: Final = re.compile(
-    rf"(?P<key>[\w.\[\]]*_mm\w*(?:\[\d+\])?) = (?P<value>{_NUMBER}|\[[^\]]*\])"
-)
+NUMBER: Final = r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
+_SET: Final = re.compile(rf"(?P<key>[\w.\[\]]*_mm\w*(?:\[\d+\])?) = (?P<value>{NUMBER}|\[[^\]]*\])")
 """A key and its value in a message."""
 
-_WORD: Final = r"(?:(?P<word>from|above|least|to|below|most) )?"
+_UP: Final = ("from", "above", "least", "more than")
+_SIDES: Final = "|".join((*_UP, "to", "below", "most", "less than"))
+_WORD: Final = rf"(?:(?P<word>{_SIDES}) )?"
 _MEASURE: Final = re.compile(
-    rf"(?P<numbers>(?:(?:from|above|least|to|below|most) )?{_NUMBER}"
-    rf"(?:(?: to below | up to | and below | to | and | or | x | by |, ){_NUMBER})*)"
+    rf"(?P<numbers>(?:(?:{_SIDES}) )?{NUMBER}"
+    rf"(?:(?: to below | up to | and below | to | and | or | x | by |, ){NUMBER})*)"
     r" (?P<unit>[mu]m[23]?(?:/(?:s|min|rad|deg)\d?)?)(?![\w/])"
 )
 """Numbers with a unit of length behind them."""
 
-_FIT: Final = re.compile(rf"\s*({_NUMBER})(\s+[A-Za-z]{{1,2}}\d{{1,2}}\s*)")
+_FIT: Final = re.compile(rf"\s*({NUMBER})(\s+[A-Za-z]{{1,2}}\d{{1,2}}\s*)")
 """A size with a tolerance class, such as 25 H7."""
 
 _UNIT: Final = re.compile(r"(mm|um)([23]?)((?:/.*)?)")
-_ENDS: Final = re.compile(rf"from ({_NUMBER}) to ({_NUMBER}) mm")
+_ENDS: Final = re.compile(rf"from ({NUMBER}) to ({NUMBER}) mm")
 
 _T = TypeVar("_T")
 
@@ -81,6 +81,11 @@ def key_in(key: str) -> str:
 def spelt_in(key: str) -> str:
     """Return the same with ``module_in`` for a module, as files may have it, too."""
     return _MM.sub(r"_in\g<power>", key)
+
+
+def spellings_in(key: str) -> list[str]:
+    """Return the keys for what is in mm that a file in inches may have, the usual one first."""
+    return list(dict.fromkeys((key_in(key), spelt_in(key), key)))
 
 
 def _key_mm(key: str) -> str:
@@ -204,15 +209,24 @@ def of_pitch(allowed: str) -> str:
     )
 
 
-def both_ways(hint: str, key: str, value: Any) -> str:
-    """Return the hint for an unknown key of a file in mm, which says how to give inches."""
-    if key == _PITCH and isinstance(value, int | float) and value > 0:
-        words = f"write {_MODULE} = {_few(INCH / value)}"
-    elif key != _key_mm(key) and _key_mm(key) in hint and isinstance(value, int | float):
-        words = f"write {_key_mm(key)} = {formatted(_inward(float(value)), _READ)}"
-    else:
-        return hint
-    return f'{words}, or say units = "inch" at the top of the file'
+def both_ways(key: str, value: Any, known: Collection[str]) -> str:
+    """Return how to give what stands in inches in a file in mm; empty if it does not.
+
+    Parameters
+    ----------
+    key : str
+        An unknown key.
+    value : object
+        Its value.
+    known : collection of str
+        The keys that are known.
+    """
+    name = _key_mm(key)
+    if key == name or name not in known:
+        return ""
+    written = _each(value, _inverse if key == _PITCH else _inward)
+    words = f"write {name} = {_few(written)}" if isinstance(written, float) else "in mm"
+    return f'did you mean {name}? ({words}, or say units = "inch" at the top of the file)'
 
 
 def _few(value: float) -> str:
@@ -260,7 +274,7 @@ def _set_in(found: re.Match[str]) -> str:
     if key_in(key) == key:
         return found[0]
     change = (lambda mm: INCH / mm) if _MODULE in key else (lambda mm: mm / INCH)
-    told = re.sub(_NUMBER, lambda one: formatted(change(float(one[0])), _digits(one[0]) + 3), value)
+    told = re.sub(NUMBER, lambda one: formatted(change(float(one[0])), _digits(one[0]) + 3), value)
     return f"{key_in(key)} = {told}"
 
 
@@ -269,17 +283,18 @@ def _measured_in(found: re.Match[str]) -> str:
 
     def number(one: re.Match[str]) -> str:
         value, digits = factor * float(one[2]), max(_digits(one[2]) + 1, 4)
-        side = {"from": 1, "above": 1, "least": 1}.get(one[1] or "", -1 if one[1] else 0)
+        side = 0 if not one[1] else 1 if one[1] in _UP else -1
         near = shortened(value, side, digits) if side and value else value
         # what is exact in few digits is not rounded
         near = value if math.isclose(float(f"{value:.{digits}g}"), value, rel_tol=1e-12) else near
         return f"{one[1]} " * bool(one[1]) + formatted(near, digits)
 
-    return f"{re.sub(f'{_WORD}({_NUMBER})', number, found['numbers'])} {unit}"
+    return f"{re.sub(f'{_WORD}({NUMBER})', number, found['numbers'])} {unit}"
 
 
 def _digits(number: str) -> int:
-    return len(re.sub(r"e.*|\D", "", number).lstrip("0"))
+    plain = re.sub(r"e.*|[-+]", "", number)
+    return len((plain if "." in plain else plain.rstrip("0")).replace(".", "").lstrip("0"))
 
 
 def unit_in(unit: str) -> tuple[str, float]:
@@ -328,47 +343,44 @@ def _finding_in(one: Finding) -> Finding:
     return replace(one, value=value, limit=limit, unit=unit, **words)
 
 
-def _facts_in(facts: Facts) -> Facts:
-    def made(tree: Any, factor: float = 1.0) -> Any:
-        if isinstance(tree, Fact):
-            return fact_in(tree, factor)
-        if isinstance(tree, Mapping):
-            return dict(entry(key, item, factor) for key, item in tree.items())
-        if isinstance(tree, list | tuple):
-            return [made(one, factor) for one in tree]
-        return text_in(tree) if isinstance(tree, str) else _times(tree, factor)
+def _tree_in(tree: Any, factor: float = 1.0) -> Any:
+    """Return facts in inches; those under a name in mm are times its factor."""
+    if isinstance(tree, Fact):
+        return _fact_in(tree, factor)
+    if isinstance(tree, Mapping):
+        return dict(_entry_in(key, item, factor) for key, item in tree.items())
+    if isinstance(tree, list | tuple):
+        return [_tree_in(one, factor) for one in tree]
+    return text_in(tree) if isinstance(tree, str) else _times(tree, factor)
 
-    def entry(key: str, item: Any, factor: float) -> tuple[str, Any]:
-        if key == _MODULE:
-            one = item if isinstance(item, Fact) else Fact(item)
-            words = {"meaning": "diametral pitch", "unit": ""}
-            return _PITCH, replace(one, value=_pitch(one.value), **words)
-        if found := _MM.search(key):
-            factor = INCH ** -int(found["power"] or 1)
-        return key_in(key), made(item, factor)
 
-    def fact_in(one: Fact, factor: float) -> Fact:
-        unit = one.unit
-        if unit is not None:
-            unit, factor = unit_in(unit)
-        if isinstance(one.value, str):
-            return replace(one, value=text_in(one.value), place=text_in(one.place))
-        words = one.text
-        if words and factor != 1.0:
-            words = re.sub(_NUMBER, lambda one: formatted(factor * float(one[0]), FEW), words)
-        return replace(
-            one,
-            value=_times(one.value, factor),
-            at_least=_times(one.at_least, factor),
-            at_most=_times(one.at_most, factor),
-            noise=one.noise * factor,
-            error=one.error * factor,
-            place=text_in(one.place),
-            text=words,
-            unit=unit,
-        )
+def _entry_in(key: str, item: Any, factor: float) -> tuple[str, Any]:
+    if key == _MODULE:
+        one = item if isinstance(item, Fact) else Fact(item)
+        words = {"meaning": "diametral pitch", "unit": ""}
+        return _PITCH, replace(one, value=_pitch(one.value), **words)
+    if found := _MM.search(key):
+        factor = INCH ** -int(found["power"] or 1)
+    return key_in(key), _tree_in(item, factor)
 
-    return facts.changed(made, key_in)
+
+def _fact_in(one: Fact, factor: float) -> Fact:
+    unit, text = one.unit, one.text
+    if unit is not None:
+        unit, factor = unit_in(unit)
+    if text and factor != 1.0:
+        text = re.sub(NUMBER, lambda number: formatted(factor * float(number[0]), FEW), text)
+    return replace(
+        one,
+        value=text_in(one.value) if isinstance(one.value, str) else _times(one.value, factor),
+        at_least=_times(one.at_least, factor),
+        at_most=_times(one.at_most, factor),
+        noise=one.noise * factor,
+        error=one.error * factor,
+        place=text_in(one.place),
+        text=text,
+        unit=unit,
+    )
 
 
 _WAYS: Final[Mapping[type, Callable[[Any], Any]]] = {
@@ -376,7 +388,7 @@ _WAYS: Final[Mapping[type, Callable[[Any], Any]]] = {
     Adjustment: _adjustment_in,
     InfeasibleError: _refusal_in,
     Finding: _finding_in,
-    Facts: _facts_in,
+    Facts: lambda facts: facts.changed(_tree_in, key_in),
     tuple: lambda things: tuple(told(one, "inch") for one in things),
     list: lambda things: [told(one, "inch") for one in things],
 }

@@ -88,7 +88,7 @@ _SUFFIXES: Final = {
     one.suffix: one.unit for one in [*globals().values()] if isinstance(one, Quantity)
 } | {
     one.suffix.replace("_mm", "_in"): one.unit.replace("mm", "in")
-    for one in (LENGTH, SPEED, SPEED_PER_MINUTE)
+    for one in (LENGTH, SPEED, SPEED_PER_MINUTE, LENGTH_PER_RAD, LENGTH_PER_RAD2)
 }
 
 

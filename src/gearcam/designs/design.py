@@ -178,7 +178,7 @@ class Design:
 
     @property
     def files_in(self) -> str:
-        """The units of files that are written: those of the table ``[output]``, or of the design."""
+        """The units of files that are written: those that ``[output]`` names, or its own."""
         return self.output.units or self.units
 
     def _document(self) -> dict[str, Any]:
@@ -235,9 +235,9 @@ class Design:
         Parameters
         ----------
         changes : mapping of str to value
-            New values by dotted keys of the design file, such as ``law.ratios[1]``, in its units; of
-            a design in inches also by keys in mm. None leaves a key out, so that it has its
-            default. A fact that repeats a key stands for it: ``pair.rack.addendum`` for
+            New values by dotted keys of the design file, such as ``law.ratios[1]``, in its units;
+            those of a design in inches also by keys in mm. None leaves a key out, so that it has
+            its default. A fact that repeats a key stands for it: ``pair.rack.addendum`` for
             ``rack.addendum``.
 
         Returns

@@ -6,10 +6,11 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from gearcam.base.inches import key_in, of_pitch, spelt_in, told
-from gearcam.base.quantities import unit_of
+from gearcam.base.inches import INCH, key_in, of_pitch, spelt_in, told, unit_in, value_in
+from gearcam.base.quantities import Quantity, unit_of
 from gearcam.designs.faults import MISSING, Fault, show
 from gearcam.designs.measures import measure_hint
+from gearcam.designs.table import Key
 
 _VALUE = "\0"
 """Stands for the value in a message while this is translated."""
@@ -50,6 +51,20 @@ def as_in_file(fault: Fault, document: Mapping[str, Any]) -> Fault:
         allowed=told(of_pitch(allowed) if key == key_in("module_mm") else allowed, "inch"),
         hint=hint,
     )
+
+
+def entry_in(entry: Key, key: str) -> Key:
+    """Return the entry of a length in mm as that of a `key` of a file in inches."""
+    param, quantity = entry.param, entry.param.quantity
+    names = ("ge", "gt", "le", "lt")
+    ends = {name: value_in(entry.key, getattr(param, name)) for name in names}
+    if key == key_in("module_mm"):
+        ends |= {"ge": ends["le"], "le": ends["ge"]}
+        unit = Quantity("", 1.0, "1/in")
+    else:
+        suffix, named = spelt_in(quantity.suffix), unit_in(quantity.unit)[0]
+        unit = Quantity(suffix, INCH * quantity.factor, named, quantity.least / INCH)
+    return replace(entry, key=key, param=replace(param, quantity=unit, **ends))
 
 
 def _found(fault: Fault, document: Mapping[str, Any]) -> tuple[tuple[str | int, ...], Any]:

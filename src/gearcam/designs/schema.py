@@ -10,6 +10,7 @@ from collections import ChainMap
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any, Final
 
+from gearcam.base.inches import UNITS, key_in, spellings_in, text_in, value_in
 from gearcam.base.quantities import NONE, REQUIRED
 from gearcam.base.rules import Field, Fields, Rule
 from gearcam.designs.faults import description
@@ -26,6 +27,8 @@ _TYPES: Final = {float: "number", int: "integer", str: "string", bool: "boolean"
 _BOUNDS: Final = {
     "gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", "le": "maximum"
 }  # fmt: skip
+
+_TURNED: Final = {"minimum": "maximum", "maximum": "minimum"}
 
 _NAME_PATTERN: Final = r"^[A-Za-z0-9_\u00aa-\uffff]([A-Za-z0-9_.\-\u00aa-\uffff]*[^.])?$"
 """An approximation for editors; the reader distinguishes letters of all scripts from symbols."""
@@ -53,15 +56,49 @@ def schema() -> Schema:
                 definitions[home] = made
                 parts[title] = {"$ref": f"#/$defs/{home}"}
         definitions[kind.name] = _branch(kind, parts)
+    branches = [_when("kind", name, _meant(kind)) for name, kind in KINDS.items()]
     return {
         "$schema": DIALECT,
         "title": "gearcam design file",
         "type": "object",
         "required": ["kind"],
         "properties": {"kind": {"enum": list(KINDS), "description": "kind of design"}},
-        "allOf": [_when("kind", name, _meant(kind)) for name, kind in KINDS.items()],
-        "$defs": definitions,
+        **_when("units", UNITS[1], _in_inches({"allOf": branches})),
+        "else": {"allOf": branches},
+        "$defs": definitions
+        | {f"inch-{name}": _in_inches(one) for name, one in definitions.items()},
     }
+
+
+def _in_inches(part: Any, key: str = "") -> Any:
+    """Return a part of a schema for files in inches; below the `key` of a length it is in mm."""
+    if isinstance(part, list):
+        return [_in_inches(one, key) for one in part]
+    if not isinstance(part, Mapping):
+        return part
+    made = dict(_word_in(word, value, key) for word, value in part.items())
+    needed = (spellings_in(one) for one in part.get("required", ()))
+    either = [{"anyOf": [{"required": [name]} for name in one]} for one in needed if one[1:]]
+    return made | ({"allOf": [*made.get("allOf", []), *either]} if either else {})
+
+
+def _word_in(word: str, value: Any, key: str) -> tuple[str, Any]:
+    """Return a word of a schema and its value for files in inches."""
+    if word == "required":
+        return word, [one for one in value if not spellings_in(one)[1:]]
+    if word == "properties":
+        own = {key_in(name): _in_inches(one, name) for name, one in value.items()}
+        return word, own | {other: {} for name in value for other in spellings_in(name)[1:]}
+    if word == "propertyNames":
+        return word, {"enum": [name for one in value["enum"] for name in spellings_in(one)]}
+    if word == "description":
+        return word, text_in(value)
+    if word == "$ref":
+        return word, value.replace("/$defs/", "/$defs/inch-")
+    if word in ("default", "const", "enum", *_BOUNDS.values()):
+        turned = key_in(key) == "diametral_pitch"  # of a small module it is large
+        return _TURNED.get(word, word) if turned else word, value_in(key, value)
+    return word, _in_inches(value, key)
 
 
 def _meant(kind: DesignKind) -> Schema:
@@ -202,6 +239,7 @@ def _branch(kind: DesignKind, parts: Schema) -> Schema:
                 "maxLength": 100,
                 "description": "names the output folder; default: the name of the design file",
             },
+            "units": {"enum": list(UNITS), "description": "of lengths: keys end in _mm or in _in"},
             **parts,
         }
         | {title: {"type": "object", "description": doc} for title, doc in OF_MANY.items()},

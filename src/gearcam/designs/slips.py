@@ -60,7 +60,7 @@ _SPELLINGS: Final[Mapping[str, str]] = {
 }
 """Other spellings of words of keys, and other words for the same thing."""
 
-_NAMES: Final = {"thickness": "face_width"}
+_NAMES: Final = {"thickness": "face_width", "diametral_pitch": "module"}
 """Other names of keys, where no table has the written one."""
 
 _RELATED: Final = ({"radius", "diameter"}, {"width", "thickness"})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -9,6 +10,8 @@ from itertools import islice
 from typing import Any, Final
 
 from gearcam.base.errors import Problem
+from gearcam.base.inches import INCH, NUMBER, UNITS, key_in, text_in
+from gearcam.base.numerals import formatted
 from gearcam.base.quantities import REQUIRED
 from gearcam.designs.examine import name_fault
 from gearcam.designs.faults import description, short, show
@@ -19,6 +22,20 @@ from gearcam.designs.table import Key, Table, table_of
 
 _COLUMN: Final = 36
 _WIDTH: Final = 96
+
+_ROUND: Final = 25.0
+"""Length, mm, that a template in inches takes for one inch: so lengths stay round."""
+
+_OF_PITCH: Final = (
+    "diametral pitch, pi*z/L with the length L of a pitch curve; a number from 0.0254 to 25400 1/in"
+)
+
+_ENTRY: Final = re.compile(
+    r"^(?P<mark>(?:# )?)(?P<head>\w+(?= = )|\[+[\w.]+\]+)(?: = (?P<value>.*?))?"
+    r"(?P<words>(?: +# .*)?(?:\n#? {20,}#   .*)*)$",
+    re.MULTILINE,
+)
+"""A key with its value, or the title of a table, and what is said beside it."""
 
 _HEADER: Final = """\
 # {doc}. Build it with: gearcam build FILE
@@ -31,7 +48,7 @@ _MARKS: Final = ("rotation_arrow", "zero_mark")
 """What a part is marked with when it is known how it is made."""
 
 
-def template(kind: str, name: str = "", process: str = "") -> str:
+def template(kind: str, name: str = "", process: str = "", units: str = UNITS[0]) -> str:
     """Return the text of a commented design file that builds as it is.
 
     Parameters
@@ -42,6 +59,8 @@ def template(kind: str, name: str = "", process: str = "") -> str:
         The design's name; ``my_`` and its kind if no folder can have this name.
     process : str
         How the parts will be made, one of the kind's processes; empty for the plain example.
+    units : {"mm", "inch"}
+        Those of the file.
 
     Returns
     -------
@@ -49,7 +68,32 @@ def template(kind: str, name: str = "", process: str = "") -> str:
         TOML.
     """
     name = "my_" + kind.replace("-", "_") if name_fault(name) else name
-    return "\n".join(_lines(KINDS[kind], name, process)) + "\n"
+    text = "\n".join(_lines(KINDS[kind], name, process)) + "\n"
+    return text_in(_ENTRY.sub(_entry_in, text)) if units == "inch" else text
+
+
+def _entry_in(found: re.Match[str]) -> str:
+    """Return a line and those that go on with its comment in inches.
+
+    A length that is given, or is an example, becomes a round one that is 1.6 % longer, so that all
+    of them fit together as before; the pitch is a whole number. A default keeps its value.
+    """
+    head, value = found["head"], found["value"] or ""
+    words = " ".join(re.sub(r"^[# ]+", "", line) for line in found["words"].splitlines())
+    key = key_in(head)
+    if value and key != head:
+        rough = not found["mark"] or words.startswith("(example)")
+        if key == "diametral_pitch":
+            words = "(example) " * words.startswith("(") + _OF_PITCH
+            value = formatted(round(_ROUND / float(value)))
+        else:
+            size = 1.0 / _ROUND if rough else 1.0 / INCH
+            value = re.sub(NUMBER, lambda one: formatted(size * float(one[0])), value)
+    text = f"{key} = {value}" if value else key
+    own = f"\n{key_line('units', 'inch', 'of lengths: keys end in _in')}" if head == "kind" else ""
+    if not words:
+        return f"{found['mark']}{text}{own}"
+    return found["mark"] + beside(text, text_in(words), _COLUMN - len(found["mark"])) + own
 
 
 def template_hint(word: str) -> str:

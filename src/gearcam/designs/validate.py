@@ -78,8 +78,8 @@ def faults_of(
     unknown = (name for name in raw if name not in table.entries)
 
     def hint_of(name: str) -> str:
-        near = key_hint(name, entries, STRONG) or home(name, raw[name])
-        return both_ways(near or key_hint(name, entries) or far(name), name, raw[name])
+        near = both_ways(name, raw[name], entries) or key_hint(name, entries, STRONG)
+        return near or home(name, raw[name]) or key_hint(name, entries) or far(name)
 
     for name, hint in hinted(unknown, hint_of):
         message = f"unknown key (its value is {show(raw[name])})"

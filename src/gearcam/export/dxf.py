@@ -1,9 +1,9 @@
 """DXF: drawings for cutters.
 
-R2010 or R12, in the unit of files, one layer per feature. Each outline is one closed polyline, of arcs
-(*bulges*) or of straight pieces, or a chain of cubic splines, one from corner to corner; openings
-and marks are circles, or polylines of exact arcs. R12, for old machines, has no splines and no
-units. The same drawing gives the same bytes.
+R2010 or R12, in the unit of files, one layer per feature. Each outline is one closed polyline, of
+arcs (*bulges*) or of straight pieces, or a chain of cubic splines, one from corner to corner;
+openings and marks are circles, or polylines of exact arcs. R12, for old machines, has no splines
+and no units. The same drawing gives the same bytes.
 
 Refused: splines in R12.
 

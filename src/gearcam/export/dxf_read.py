@@ -70,7 +70,8 @@ def measure_dxf(data: bytes, contours: Sequence[Contour], known: Known | None = 
     Raises
     ------
     DxfError
-        If the file is damaged, is not in the unit of files, or holds another number of closed outlines.
+        If the file is damaged, is not in the unit of files, or holds another number of closed
+        outlines.
     """
     document, unit = read_dxf(data), file_unit()
     if document.dxfversion != _R12 and document.header.get("$INSUNITS") != unit.dxf:

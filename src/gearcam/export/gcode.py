@@ -1,8 +1,8 @@
 """Programs of milling machines with a rotary axis A about X, as G-code.
 
 Only words that free controllers run alike (LinuxCNC; grbl with a fourth axis): G0, G1, G4, G17,
-G20, G21, G40, G49, G53, G54, G61, G80, G90, G93, G94, M0, M3, M5, M30, one comment a line. Numbers have
-no exponent.
+G20, G21, G40, G49, G53, G54, G61, G80, G90, G93, G94, M0, M3, M5, M30, one comment a line. Numbers
+have no exponent.
 
 The tool rises before anything else moves: to Z0 of the machine, which homing has put at its top.
 There X, Y and A are brought to the start, the spindle is started, and then the tool comes down.

@@ -2,8 +2,9 @@
 
 All three are in the unit of files (`gearcam.base.inches.file_unit`). STL has none, and says it in
 its header; 3MF states it; the unit of glTF is the metre, but CAD programs read the plain numbers,
-so the GLB keeps the unit of files and notes it in its scene's extras (``"units": "mm"``). STL and GLB have single precision: vertices are rounded first and coincident
-ones are joined, so that the file is closed as written. The same mesh gives the same bytes.
+so the GLB keeps the unit of files and notes it in its scene's extras (``"units": "mm"``). STL and
+GLB have single precision: vertices are rounded first and coincident ones are joined, so that the
+file is closed as written. The same mesh gives the same bytes.
 
 Refused: meshes that are not closed, before or after rounding.
 

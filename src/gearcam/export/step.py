@@ -1,10 +1,10 @@
 """STEP: exact solids for CAD and CAM programs.
 
-AP214, in the unit of files. Each part is one product of its name, with a solid for each of its steps;
-several parts form an assembly in which each is turned and shifted to its place. Flanks, tips and
-roots are B-spline faces within the tolerance, one for each smooth piece of the outline; bores, hubs
-and marks are cylinders and planes. Cams in space are solids of bands (`step_bands`). The same parts
-give the same bytes: the file has a fixed date.
+AP214, in the unit of files. Each part is one product of its name, with a solid for each of its
+steps; several parts form an assembly in which each is turned and shifted to its place. Flanks, tips
+and roots are B-spline faces within the tolerance, one for each smooth piece of the outline; bores,
+hubs and marks are cylinders and planes. Cams in space are solids of bands (`step_bands`). The same
+parts give the same bytes: the file has a fixed date.
 
 Refused: no parts at all; invalid solids (see `step_shapes` and `step_bands`).
 

@@ -6,9 +6,11 @@ import math
 from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import Any, Final
 
+from gearcam.base.inches import spellings_in
 from gearcam.designs.design import path_of
 from gearcam.designs.examine import nested_in
 from gearcam.designs.faults import dotted
+from gearcam.designs.in_inches import entry_in
 from gearcam.designs.kind import KINDS
 from gearcam.designs.lines import Path, spans_of
 from gearcam.designs.reader import document_in
@@ -22,7 +24,7 @@ Values = Mapping[str, float]
 _WIDE: Final = 20.0
 """Largest range of a slider relative to the value."""
 
-_ROOM: Final[Mapping[str, float]] = {"deg": 10.0, "mm": 1.0}
+_ROOM: Final[Mapping[str, float]] = {"deg": 10.0, "mm": 1.0, "in": 0.05}
 """Range of a slider to both sides of 0, by unit; half of that of a plain number is 0.5."""
 
 _STEPS: Final = 1000.0
@@ -256,8 +258,10 @@ def _entry(document: Mapping[str, Any], path: Path) -> Key | None:
             return _entry({"kind": key.param.nested[0], **inner}, path[len(at) :])
     kind = KINDS[document["kind"]].meant(document)
     for at, table, _ in kind.tables_in(document):
-        if path[: len(at)] == at:
-            return table.entries.get(str(path[len(at)])) if path[len(at) :] else None
+        if path[: len(at)] == at and path[len(at) :]:
+            key, known = str(path[len(at)]), table.entries
+            own = next((one for one in known if key in spellings_in(one) and one != key), "")
+            return entry_in(known[own], key) if own else known.get(key)
     return None
 
 
