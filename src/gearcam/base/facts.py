@@ -67,7 +67,7 @@ _UNITS: Final = {
 }
 """Units by the ends of names, longer ends first."""
 
-_PER: Final = re.compile(r"(?:_(mm|in|deg|rad))?_per_((?:rad|mm)\d?)$")
+_PER: Final = re.compile(r"(?:_(mm|in|deg|rad))?_per_((?:rad|mm|in)\d?)$")
 """Ends of names of derivatives by an angle or a length: ``velocity_mm_per_rad``."""
 
 _METHODS: Final = "accuracy.how."

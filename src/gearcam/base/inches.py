@@ -51,7 +51,10 @@ _MM: Final = re.compile(
 _IN: Final = re.compile(r"_in(?=(?:_s|_min|_per_rad\d?)?(?!\w))")
 
 NUMBER: Final = r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
-_SET: Final = re.compile(rf"(?P<key>[\w.\[\]]*_mm\w*(?:\[\d+\])?) = (?P<value>{NUMBER}|\[[^\]]*\])")
+_SET: Final = re.compile(
+    r"(?P<key>[\w.\[\]]*_mm\w*(?:\[\d+\])?)(?P<sign> = | (?:of |may be )?(?:up to )?)"
+    rf"(?P<value>{NUMBER}(?: \+ {NUMBER})?(?! mm)|\[[^\]]*\])"
+)
 """A key and its value in a message."""
 
 _UP: Final = ("from", "above", "least", "more than")
@@ -59,12 +62,13 @@ _SIDES: Final = "|".join((*_UP, "to", "below", "most", "less than"))
 _WORD: Final = rf"(?:(?P<word>{_SIDES}) )?"
 _MEASURE: Final = re.compile(
     rf"(?P<numbers>(?:(?:{_SIDES}) )?{NUMBER}"
-    rf"(?:(?: to below | up to | and below | to | and | or | x | by |, ){NUMBER})*)"
+    rf"(?:(?: to below | up to | and below (?:the \w+'s )?| to | and | or | x | by |, (?:[xyz] = )?)"
+    rf"{NUMBER})*)"
     r" (?P<unit>[mu]m[23]?(?:/(?:s|min|rad|deg)\d?)?)(?![\w/])"
 )
 """Numbers with a unit of length behind them."""
 
-_FIT: Final = re.compile(rf"\s*({NUMBER})(\s+[A-Za-z]{{1,2}}\d{{1,2}}\s*)")
+_FIT: Final = re.compile(rf"\s*({NUMBER})(\s*[A-Za-z]{{1,2}}\d{{1,2}}\s*)")
 """A size with a tolerance class, such as 25 H7."""
 
 _UNIT: Final = re.compile(r"(mm|um)([23]?)((?:/.*)?)")
@@ -116,6 +120,8 @@ def _each(value: Any, change: Callable[[float], float]) -> Any:
     """Return a value with its numbers changed, also those in lists and in sizes with a fit."""
     if isinstance(value, list | tuple):
         return [_each(one, change) for one in value]
+    if hasattr(value, "tolerance_class"):
+        value = str(value)
     if isinstance(value, str) and (fit := _FIT.fullmatch(value)):
         return formatted(change(float(fit[1])), _WRITTEN) + fit[2]
     if isinstance(value, bool) or not isinstance(value, int | float):
@@ -274,8 +280,12 @@ def _set_in(found: re.Match[str]) -> str:
     if key_in(key) == key:
         return found[0]
     change = (lambda mm: INCH / mm) if _MODULE in key else (lambda mm: mm / INCH)
-    told = re.sub(NUMBER, lambda one: formatted(change(float(one[0])), _digits(one[0]) + 3), value)
-    return f"{key_in(key)} = {told}"
+    told = re.sub(
+        NUMBER,
+        lambda one: formatted(change(float(one[0])), min(max(_digits(one[0]) + 3, 6), 8)),
+        value,
+    )
+    return key_in(key) + found["sign"] + told
 
 
 def _measured_in(found: re.Match[str]) -> str:
@@ -304,6 +314,14 @@ def unit_in(unit: str) -> tuple[str, float]:
         return unit, 1.0
     power = int(found[2] or 1)
     return f"in{found[2]}{found[3]}", ((1e-3 if found[1] == "um" else 1.0) / INCH) ** power
+
+
+def name_in(name: str) -> tuple[str, float]:
+    """Return the name of a fact or a column in inches, and what its numbers are times."""
+    if name.endswith("_per_mm"):
+        return f"{name[:-2]}in", INCH
+    found = _MM.search(name)
+    return (key_in(name), INCH ** -int(found["power"] or 1)) if found else (name, 1.0)
 
 
 def _times(value: Any, factor: float) -> Any:
@@ -351,7 +369,12 @@ def _tree_in(tree: Any, factor: float = 1.0) -> Any:
         return dict(_entry_in(key, item, factor) for key, item in tree.items())
     if isinstance(tree, list | tuple):
         return [_tree_in(one, factor) for one in tree]
-    return text_in(tree) if isinstance(tree, str) else _times(tree, factor)
+    return _words_in(tree) if isinstance(tree, str) else _times(tree, factor)
+
+
+def _words_in(text: str) -> str:
+    """Return a text in inches; it may be a unit."""
+    return unit_in(text)[0] if _UNIT.fullmatch(text) else text_in(text)
 
 
 def _entry_in(key: str, item: Any, factor: float) -> tuple[str, Any]:
@@ -359,9 +382,8 @@ def _entry_in(key: str, item: Any, factor: float) -> tuple[str, Any]:
         one = item if isinstance(item, Fact) else Fact(item)
         words = {"meaning": "diametral pitch", "unit": ""}
         return _PITCH, replace(one, value=_pitch(one.value), **words)
-    if found := _MM.search(key):
-        factor = INCH ** -int(found["power"] or 1)
-    return key_in(key), _tree_in(item, factor)
+    name, own = name_in(key)
+    return name, _tree_in(item, factor if name == key else own)
 
 
 def _fact_in(one: Fact, factor: float) -> Fact:
@@ -372,7 +394,8 @@ def _fact_in(one: Fact, factor: float) -> Fact:
         text = re.sub(NUMBER, lambda number: formatted(factor * float(number[0]), FEW), text)
     return replace(
         one,
-        value=text_in(one.value) if isinstance(one.value, str) else _times(one.value, factor),
+        value=_words_in(one.value) if isinstance(one.value, str) else _times(one.value, factor),
+        meaning=text_in(one.meaning),
         at_least=_times(one.at_least, factor),
         at_most=_times(one.at_most, factor),
         noise=one.noise * factor,
@@ -414,8 +437,7 @@ class FileUnit:
 
     def column(self, name: str) -> tuple[str, float]:
         """Return the name of a column of lengths in the unit, and what its numbers are times."""
-        found = _MM.search(name) if self.size != 1.0 else None
-        return (key_in(name), self.size ** -int(found["power"] or 1)) if found else (name, 1.0)
+        return name_in(name) if self.size != 1.0 else (name, 1.0)
 
     def told(self, text: str) -> str:
         """Return a text with its lengths in the unit."""

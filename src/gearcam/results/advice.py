@@ -30,6 +30,7 @@ from gearcam.base.adjustments import (
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.base.inches import changes_in, changes_mm, told
+from gearcam.base.numerals import shortened
 from gearcam.designs.design import Design, document_of, nested_designs, own_document, value_at
 from gearcam.designs.faults import dotted
 from gearcam.parts.fits import fitted, in_class_of
@@ -400,7 +401,7 @@ class Search:
         if self.over():
             return False
         changed = adjustment.far or adjustment.near or next(iter(adjustment.steps), {})
-        adjustment = told(adjustment, self.result.design.units)
+        adjustment = self._told(adjustment)
         if self.keeping >= _FEW and self.advice.moves(changed, self.result.design):
             return False
         if adjustment.steps:
@@ -427,6 +428,19 @@ class Search:
         guess = adjustment.guess
         looks = places.from_guess(guess) if guess else places.looks
         return self._least(lambda one: self.in_class(places.at(one)), looks, guessed=bool(guess))
+
+    def _told(self, adjustment: Adjustment) -> Adjustment:
+        """Return an adjustment in the units of the file; a single length in inches is rounded."""
+        own = told(adjustment, self.result.design.units)
+        if own is adjustment or own.far or len(own.near.keys() - adjustment.near.keys()) != 1:
+            return own
+        *others, (key, value) = own.near.items()
+        if others:
+            return own
+        given = value_at(self.own_document, key)
+        if not isinstance(value, float) or not isinstance(given, float) or value in (0.0, given):
+            return own
+        return replace(own, near={key: shortened(value, abs(value) - abs(given))})
 
     def _least(
         self, at: Callable[[int], Changes], looks: Iterable[int], *, guessed: bool = False

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from gearcam.base.display import NotebookView, cut
 from gearcam.base.facts import Facts
 from gearcam.base.findings import Finding, in_order
-from gearcam.base.inches import files_in
+from gearcam.base.inches import files_in, told
 from gearcam.base.pickling import pickled
 from gearcam.numeric.columns import Columns
 from gearcam.results.staged import Staged
@@ -300,5 +300,6 @@ class StudyResult(NotebookView):
         """
         summary = self.result.summary(self.facts, self.findings)
         written = summary.write(directory, self.files, keep=True)
-        lines = self.lines or tuple(self.facts.lines(f"{self.study.key}."))
+        lines = told(self.lines, self.result.design.files_in)
+        lines = lines or tuple(written.facts.lines(f"{self.study.key}."))
         return replace(written, table=lines, interrupted=self.interrupted)

@@ -14,7 +14,7 @@ from gearcam.base.facts import lined_up
 from gearcam.base.numerals import formatted
 from gearcam.commands import GOOD, IMPOSSIBLE, INTERRUPTED, Options, add_output, each
 from gearcam.console import complain, infeasible_text, say
-from gearcam.designs.design import document_of, value_at
+from gearcam.designs.design import own_document, value_at
 from gearcam.kinds.shared import METHODS
 from gearcam.sweeps.command import asked_by, engine_arguments, engine_given, told
 from gearcam.sweeps.rows import Built, measured
@@ -100,7 +100,7 @@ def _table(search: Optimum, best: Sequence[Built]) -> Iterator[tuple[str, ...]]:
     yield ("", "given", *heads[: len(shown)])
     for name in search.goal.signs:
         yield (name, _cell(given.facts.get(name, "")), *(_cell(one.facts[name]) for one in shown))
-    document = document_of(plan.base)
+    document = own_document(plan.base)
     for axis in plan.axes:
         own = value_at(document, axis.key)
         yield (axis.key, _cell(own), *(_cell(one.values[axis.key]) for one in shown))

@@ -19,7 +19,7 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import DesignError, Problem
 from gearcam.base.two_names import key_of
-from gearcam.designs.design import Design, document_of, value_at
+from gearcam.designs.design import Design, document_of, own_document, value_at
 from gearcam.designs.kind import KINDS
 from gearcam.numeric.arrays import Array
 from gearcam.sweeps.axes import Varied
@@ -151,7 +151,7 @@ class Plan(ShortRepr):
     @cached_property
     def _wholes(self) -> dict[str, tuple[int, int]]:
         """The least and the largest value of ranges of whole numbers by their keys."""
-        document = document_of(self.base)
+        document = own_document(self.base)
         return {
             axis.key: (math.ceil(axis.at(0.0) - _ROUNDING), math.floor(axis.at(1.0) + _ROUNDING))
             for axis in self.axes
