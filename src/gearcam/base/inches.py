@@ -53,7 +53,7 @@ _IN: Final = re.compile(r"_in(?=(?:_s|_min|_per_rad\d?)?(?!\w))")
 NUMBER: Final = r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
 _SET: Final = re.compile(
     r"(?P<key>[\w.\[\]]*_mm\w*(?:\[\d+\])?)(?P<sign> = | (?:of |may be )?(?:up to )?)"
-    rf"(?P<value>{NUMBER}(?: \+ {NUMBER})?(?! mm)|\[[^\]]*\])"
+    rf"(?P<value>(?>{NUMBER}(?: \+ {NUMBER})?)(?! [mu]m)|\[[^\]]*\])"
 )
 """A key and its value in a message."""
 
@@ -62,7 +62,7 @@ _SIDES: Final = "|".join((*_UP, "to", "below", "most", "less than"))
 _WORD: Final = rf"(?:(?P<word>{_SIDES}) )?"
 _MEASURE: Final = re.compile(
     rf"(?P<numbers>(?:(?:{_SIDES}) )?{NUMBER}"
-    rf"(?:(?: to below | up to | and below (?:the \w+'s )?| to | and | or | x | by |, (?:[xyz] = )?)"
+    r"(?:(?: to below | up to | and below (?:the \w+'s )?| to | and | or | x | by |, (?:[xyz] = )?)"
     rf"{NUMBER})*)"
     r" (?P<unit>[mu]m[23]?(?:/(?:s|min|rad|deg)\d?)?)(?![\w/])"
 )
@@ -391,7 +391,12 @@ def _fact_in(one: Fact, factor: float) -> Fact:
     if unit is not None:
         unit, factor = unit_in(unit)
     if text and factor != 1.0:
-        text = re.sub(NUMBER, lambda number: formatted(factor * float(number[0]), FEW), text)
+        # the numbers of the value are not rounded as those of its text
+        known = one.value if isinstance(one.value, list | tuple) else ()
+        numbers = iter(known if len(known) == len(re.findall(NUMBER, text)) else ())
+        text = re.sub(
+            NUMBER, lambda this: formatted(factor * float(next(numbers, this[0])), FEW), text
+        )
     return replace(
         one,
         value=_words_in(one.value) if isinstance(one.value, str) else _times(one.value, factor),

@@ -56,18 +56,21 @@ def schema() -> Schema:
                 definitions[home] = made
                 parts[title] = {"$ref": f"#/$defs/{home}"}
         definitions[kind.name] = _branch(kind, parts)
-    branches = [_when("kind", name, _meant(kind)) for name, kind in KINDS.items()]
     return {
         "$schema": DIALECT,
         "title": "gearcam design file",
         "type": "object",
         "required": ["kind"],
         "properties": {"kind": {"enum": list(KINDS), "description": "kind of design"}},
-        **_when("units", UNITS[1], _in_inches({"allOf": branches})),
-        "else": {"allOf": branches},
+        "allOf": [_when("kind", name, _of_units(_meant(kind))) for name, kind in KINDS.items()],
         "$defs": definitions
         | {f"inch-{name}": _in_inches(one) for name, one in definitions.items()},
     }
+
+
+def _of_units(made: Schema) -> Schema:
+    """Return the schema of a file in mm as that of one in mm or in inches."""
+    return _when("units", UNITS[1], _in_inches(made)) | {"else": made}
 
 
 def _in_inches(part: Any, key: str = "") -> Any:

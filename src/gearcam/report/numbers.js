@@ -1,7 +1,7 @@
 // Numbers as people read them; gearcam.base.readable does the same in Python, which chooses units.
 
 const READ = {
-  finest: { mm: 3, deg: 2 }, // decimals of what is made and set, within five digits
+  finest: { mm: 3, in: 4, deg: 2 }, // decimals of what is made and set, within five digits
   digits: 4, // significant ones, one more where a number begins with 1
   written: 5, // digits of a decimal that is written as it is
   faint: 2, // least digits of a small number beside a large one
