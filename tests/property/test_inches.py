@@ -24,7 +24,7 @@ RELATIVE = 1e-12
 
 HERE = settings(
     QUICK,
-    max_examples=40,
+    max_examples=120,
     suppress_health_check=[*HealthCheck],
 )
 

@@ -152,7 +152,7 @@ def metric(document: Mapping[str, Any]) -> tuple[dict[str, Any], list[tuple[Any,
     def made(part: Any, at: tuple[Any, ...]) -> Any:
         if isinstance(part, list):
             return [made(one, (*at, number)) for number, one in enumerate(part)]
-        if not isinstance(part, Mapping) or at == ("sweep",) or (at and part.get("units") == "mm"):
+        if not isinstance(part, Mapping) or at == ("sweep",):
             return _key_mm(part) if at[:1] == ("goal",) and isinstance(part, str) else part
         found: dict[str, Any] = {}
         spelt: dict[str, str] = {}

@@ -92,7 +92,8 @@ class OutputSpec(ShortRepr):
         default=None,
         choices=UNITS,
         example="inch",
-        doc="unit of lengths in files; if left out that of the design. Drawings are in mm",
+        doc="unit of lengths in files; if left out that of the design; workshop drawings always "
+        "have millimetres",
     )
     dxf_curves: str = param(
         TEXT,

@@ -104,7 +104,7 @@ def dxf_bytes(drawing: Drawing, style: DxfStyle) -> bytes:
     unit = file_unit()
     text = document_text(style.version, lambda new: _fill(new, drawing, style), unit)
     if style.version == "R12" and unit.size != 1.0:  # it has no unit, but comments
-        text = f"999\nlengths are in {unit.name}\n{text}"
+        text = f"999\n{unit.told('lengths are in mm')}\n{text}"
     return text.encode("utf-8")
 
 
