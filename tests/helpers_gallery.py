@@ -348,6 +348,12 @@ NUMBERS: dict[str, dict[str, Number]] = {
         "gears[1].openings[0].area_mm2": (keyed_area(8, 5, "2.3"), 1e-10),
         "gears[1].openings[1].center_mm[0]": (18.0, 1e-12),
     },
+    "inch_pair": {
+        # 36 teeth of 12 diametral pitch: the curve of an ordinary wheel of 3 in is as long
+        "pair.center_distance_mm": (ellipse_distance(3, "0.25") * 25.4, 1e-9),
+        # in units of 1/16 in
+        "gears[0].openings[0].area_mm2": (keyed_area(4, 2, "1") * 1.5875**2, 1e-9),
+    },
     "stepped_ellipse": {
         "pair.center_distance_mm": (ellipse_distance(2 * 24, "0.3"), 1e-9),
         "steps.moved_mm[3]": (1.5 * math.pi, 1e-12),

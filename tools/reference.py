@@ -287,6 +287,15 @@ def keys() -> Iterator[str]:
             "name of the file",
             "names the output folder",
         ),
+        (
+            "`units`",
+            '"mm" or "inch"',
+            '`"mm"`',
+            (
+                "unit of lengths: in inches keys that end in `_mm` end in `_in`, and "
+                "`diametral_pitch` stands for `module_mm` ([files](../files.md#inches))"
+            ),
+        ),
     ]
     yield table(KEY_HEADS, rows)
     for kind in ordered_kinds():

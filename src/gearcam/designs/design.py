@@ -596,6 +596,7 @@ def hash_of(design: Design) -> str:
             document.pop(title, None)
     for key in ("files", *(() if asked else ("studies",))):
         del document["output"][key]
+    document["output"].pop("units", None)
     document["output"] |= {"units": design.files_in} if design.files_in != UNITS[0] else {}
     document.pop("limits", None)
     for path, inner in nested_designs(design):

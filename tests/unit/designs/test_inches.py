@@ -69,6 +69,8 @@ def test_it_is_the_same_design() -> None:
     assert inch.with_({"units": "mm"}) == mm
     assert mm.with_({"units": "inch"}) == inch
     assert hash_of(inch) != hash_of(mm)
+    files = {units: hash_of(mm.with_({"output.units": units})) for units in ("mm", "inch")}
+    assert files["mm"] == hash_of(mm) != files["inch"]
 
 
 @pytest.mark.parametrize("inches", [0.1, 0.333333333333, 0.375, 3.1, 2.000001, 12.7, 1e-3, 39.99])
