@@ -101,8 +101,8 @@ def new_options(parser: argparse.ArgumentParser) -> None:
     suggest(
         process, lambda: dict.fromkeys(one for kind in KINDS.values() for one in kind.processes)
     )
-    words = "unit of lengths in the file (default: mm)"
-    parser.add_argument("--units", choices=UNITS, default=UNITS[0], help=words)
+    words = "unit of lengths in the file, mm or inch (default: mm)"
+    parser.add_argument("--units", metavar="UNIT", choices=UNITS, default=UNITS[0], help=words)
 
 
 def new(options: Options) -> int:

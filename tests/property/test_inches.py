@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gearcam.base.errors import DesignError
@@ -22,11 +22,7 @@ from random_designs.designs import MAKERS, design
 RELATIVE = 1e-12
 """Largest difference of a number that was in inches between, relative."""
 
-HERE = settings(
-    QUICK,
-    max_examples=120,
-    suppress_health_check=[*HealthCheck],
-)
+HERE = settings(QUICK, max_examples=120)
 
 
 def alike(one: Any, other: Any) -> bool:

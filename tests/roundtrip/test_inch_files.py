@@ -76,7 +76,8 @@ def test_dxf(inch: Any, mm: Any, style: dict[str, str]) -> None:
 def test_stl_says_it_in_its_header(inch: Any, mm: Any) -> None:
     (data, *_), (other, *_) = inch.files("stl").values(), mm.files("stl").values()
     assert data[:80].rstrip(b"\0") == b"gearcam gear1 (in)"
-    mesh, whole = (trimesh.load(io.BytesIO(one), file_type="stl") for one in (data, other))
+    both: Any = [trimesh.load(io.BytesIO(one), file_type="stl") for one in (data, other)]
+    mesh, whole = both
     assert mesh.is_watertight
     assert mesh.extents == pytest.approx(whole.extents / INCH, rel=SINGLE)
     assert mesh.volume == pytest.approx(whole.volume / INCH**3, rel=SINGLE)
@@ -122,10 +123,11 @@ def test_columns_are_named_in_inches(inch: Any, mm: Any) -> None:
         head, *_ = data.decode().splitlines()
         before, *_ = mm.files("csv")[name].decode().splitlines()
         assert head == before.replace("_mm", "_in")
-        here, there = (
+        both: Any = [
             np.genfromtxt(io.BytesIO(one), delimiter=",", names=True)
             for one in (data, mm.files("csv")[name])
-        )
+        ]
+        here, there = both
         for new, old in zip(here.dtype.names, there.dtype.names, strict=True):
             factor = INCH if old != new else 1.0
             assert here[new] * factor == pytest.approx(there[old], rel=ROUNDING)
@@ -216,7 +218,7 @@ def test_units_of_files_are_those_of_the_design_if_none_are_given(inch: Any) -> 
     assert (inch.design.units, inch.design.output.units, inch.design.files_in) == (
         "inch", None, "inch"
     )  # fmt: skip
-    design = gearcam.load(PROFILES / "ellipse.toml").with_({"output.units": "inch"})
+    design: Any = gearcam.load(PROFILES / "ellipse.toml").with_({"output.units": "inch"})
     assert (design.units, design.files_in) == ("mm", "inch")
     assert b"x_in,y_in" in gearcam.build(design).files("csv")["gear1_outline.csv"]
     assert math.isclose(design.pair.face_width, 10.0)

@@ -123,9 +123,14 @@ class Staged(NotebookView):
         return ()
 
     def summary(self, facts: Facts, findings: Sequence[Finding]) -> Summary:
-        """Return the summary with `facts` and `findings` of the result, or of a study.
+        """Return the summary of the result, or of a study.
 
-        Facts are in the unit of files, findings in that of the design, whose keys they name.
+        Parameters
+        ----------
+        facts : Facts
+            Told in the unit of files.
+        findings : sequence of Finding
+            Told in that of the design, whose keys they name.
         """
         return Summary(
             design=self.design,
