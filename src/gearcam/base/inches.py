@@ -71,6 +71,9 @@ _MEASURE: Final = re.compile(
 _FIT: Final = re.compile(rf"\s*({NUMBER})(\s*[A-Za-z]{{1,2}}\d{{1,2}}\s*)")
 """A size with a tolerance class, such as 25 H7."""
 
+_SIZED: Final = re.compile(rf'"({NUMBER})(\s*[A-Za-z]{{1,2}}\d{{1,2}})"')
+"""The same in a message."""
+
 _UNIT: Final = re.compile(r"(mm|um)([23]?)((?:/.*)?)")
 _ENDS: Final = re.compile(rf"from ({NUMBER}) to ({NUMBER}) mm")
 
@@ -92,7 +95,7 @@ def spellings_in(key: str) -> list[str]:
     return list(dict.fromkeys((key_in(key), spelt_in(key), key)))
 
 
-def _key_mm(key: str) -> str:
+def key_mm(key: str) -> str:
     """Return the key of a document in mm."""
     return _IN.sub("_mm", re.sub(rf"\b{_PITCH}\b", _MODULE, key))
 
@@ -123,7 +126,7 @@ def _each(value: Any, change: Callable[[float], float]) -> Any:
     if hasattr(value, "tolerance_class"):
         value = str(value)
     if isinstance(value, str) and (fit := _FIT.fullmatch(value)):
-        return formatted(change(float(fit[1])), _WRITTEN) + fit[2]
+        return repr(change(float(fit[1]))).removesuffix(".0") + fit[2]
     if isinstance(value, bool) or not isinstance(value, int | float):
         return value
     try:
@@ -153,11 +156,11 @@ def metric(document: Mapping[str, Any]) -> tuple[dict[str, Any], list[tuple[Any,
         if isinstance(part, list):
             return [made(one, (*at, number)) for number, one in enumerate(part)]
         if not isinstance(part, Mapping) or at == ("sweep",):
-            return _key_mm(part) if at[:1] == ("goal",) and isinstance(part, str) else part
+            return key_mm(part) if at[:1] == ("goal",) and isinstance(part, str) else part
         found: dict[str, Any] = {}
         spelt: dict[str, str] = {}
         for key, value in part.items():
-            name = key if isinstance(value, Mapping) else _key_mm(key)
+            name = key if isinstance(value, Mapping) else key_mm(key)
             if name in found:
                 twice.append(((*at, key), spelt[name]))
                 continue
@@ -200,8 +203,8 @@ def changes_in(changes: Mapping[str, Any]) -> dict[str, Any]:
 def changes_mm(changes: Mapping[str, Any]) -> dict[str, Any]:
     """Return values by dotted keys as in a file in mm."""
     return {
-        _key_mm(key): _each(value, _inverse if _PITCH in key else _inward)
-        if _key_mm(key) != key
+        key_mm(key): _each(value, _inverse if _PITCH in key else _inward)
+        if key_mm(key) != key
         else value
         for key, value in changes.items()
     }
@@ -227,7 +230,7 @@ def both_ways(key: str, value: Any, known: Collection[str]) -> str:
     known : collection of str
         The keys that are known.
     """
-    name = _key_mm(key)
+    name = key_mm(key)
     if key == name or name not in known:
         return ""
     written = _each(value, _inverse if key == _PITCH else _inward)
@@ -270,6 +273,7 @@ def telling(units: str) -> Iterator[None]:
 
 def text_in(text: str) -> str:
     """Return a text with its keys and lengths in inches; limits stay on their side."""
+    text = _SIZED.sub(lambda size: f'"{formatted(float(size[1]) / INCH)}{size[2]}"', text)
     text = _SET.sub(_set_in, text)
     text = _MEASURE.sub(_measured_in, text)
     return re.sub(r"\bin mm\b", "in inches", key_in(text))
@@ -369,12 +373,13 @@ def _tree_in(tree: Any, factor: float = 1.0) -> Any:
         return dict(_entry_in(key, item, factor) for key, item in tree.items())
     if isinstance(tree, list | tuple):
         return [_tree_in(one, factor) for one in tree]
-    return _words_in(tree) if isinstance(tree, str) else _times(tree, factor)
+    return _words_in(tree, factor) if isinstance(tree, str) else _times(tree, factor)
 
 
-def _words_in(text: str) -> str:
-    """Return a text in inches; it may be a unit."""
-    return unit_in(text)[0] if _UNIT.fullmatch(text) else text_in(text)
+def _words_in(text: str, factor: float) -> str:
+    """Return a text in inches; it may be a unit, or a size with a tolerance class."""
+    text = unit_in(text)[0] if _UNIT.fullmatch(text) else text_in(text)
+    return _times(text, factor)
 
 
 def _entry_in(key: str, item: Any, factor: float) -> tuple[str, Any]:
@@ -399,7 +404,9 @@ def _fact_in(one: Fact, factor: float) -> Fact:
         )
     return replace(
         one,
-        value=_words_in(one.value) if isinstance(one.value, str) else _times(one.value, factor),
+        value=_words_in(one.value, factor)
+        if isinstance(one.value, str)
+        else _times(one.value, factor),
         meaning=text_in(one.meaning),
         at_least=_times(one.at_least, factor),
         at_most=_times(one.at_most, factor),

@@ -39,17 +39,16 @@ def as_in_file(fault: Fault, document: Mapping[str, Any]) -> Fault:
         value = fault.value
     else:
         message = message.replace(show(fault.value), _VALUE, 1)
-    if isinstance(value, str) and key_in(key) == key != fault.path[-1]:
-        hint = measure_hint(value, unit_of(key), key=key) or hint
-    else:
-        hint = told(hint, "inch")
+    measured = isinstance(value, str) and "is not a number" in message and key_in(key) == key
+    if measured:
+        hint = measure_hint(value, unit_of(key), key=key, classes="ISO 286" in allowed)
     return replace(
         fault,
         path=path,
         value=value,
         message=told(message, "inch").replace(_VALUE, show(value)),
         allowed=told(of_pitch(allowed) if key == key_in("module_mm") else allowed, "inch"),
-        hint=hint,
+        hint=hint.replace(" in in", " in inches") if measured else told(hint, "inch"),
     )
 
 

@@ -14,6 +14,7 @@ from typing import Any, Final
 from weakref import WeakKeyDictionary
 
 from gearcam.base.errors import DesignError, Problem
+from gearcam.base.inches import key_mm
 from gearcam.base.numerals import size_of
 from gearcam.base.quantities import FILE_KEYS, unit_of
 from gearcam.base.reading import UnreadableError, read
@@ -245,6 +246,7 @@ def _measure_hint(line: str) -> str:
 def _takes_classes(key: str) -> bool:
     """Return whether a key of some kind of design may have a tolerance class."""
     tables = (kind.table(title) for kind in KINDS.values() for title in kind.tables)
+    key = key_mm(key)
     return any(key in one.entries and one.entries[key].param.fit for one in tables)
 
 

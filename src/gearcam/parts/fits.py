@@ -163,6 +163,14 @@ def fitted(value: Any) -> Any:
         return value
 
 
+def without_class(value: Any) -> Any:
+    """Return a `value`, or each of several, as a number if it is a size with a class."""
+    if isinstance(value, list | tuple):
+        return type(value)(map(without_class, value))
+    size = fitted(value)
+    return +size if isinstance(size, FitSize) else value
+
+
 def in_class_of(given: Any, value: Any) -> Any:
     """Return a `value` as a size with the class of what is `given`, in the place of which it comes.
 

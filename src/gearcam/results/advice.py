@@ -31,9 +31,9 @@ from gearcam.base.display import ShortRepr
 from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.base.inches import changes_in, changes_mm, told
 from gearcam.base.numerals import shortened
-from gearcam.designs.design import Design, document_of, nested_designs, own_document, value_at
+from gearcam.designs.design import Design, document_of, nested_designs, value_at
 from gearcam.designs.faults import dotted
-from gearcam.parts.fits import fitted, in_class_of
+from gearcam.parts.fits import in_class_of, without_class
 from gearcam.results.kind import kind_of
 from gearcam.results.nested import keyed
 
@@ -308,13 +308,15 @@ class Search:
 
     def in_class(self, changes: Changes) -> Changes:
         """Return `changes` in which sizes keep the tolerance classes that the design gives them."""
-        given = {key: value_at(self.document, key) for key in changes}
-        return {key: in_class_of(given[key], value) for key, value in changes.items()}
+        in_mm = changes_mm(changes)
+        given = {key: value_at(self.document, key) for key in in_mm}
+        return self.own({key: in_class_of(given[key], value) for key, value in in_mm.items()})
 
-    @cached_property
-    def own_document(self) -> dict[str, Any]:
-        """The design as a document in the units of its file."""
-        return own_document(self.result.design)
+    def number(self, key: str) -> Any:
+        """Return what the design has at a key of the file, sizes with a class as numbers."""
+        (in_mm,) = changes_mm({key: None})
+        plain = {in_mm: without_class(value_at(self.document, in_mm))}
+        return self.own(plain)[key]
 
     def own(self, changes: Changes) -> Changes:
         """Return changes in the units of the file."""
@@ -410,8 +412,7 @@ class Search:
             return self._least(lambda place: every[place - 1], range(1, len(steps) + 1))
         far = adjustment.far
         near = {
-            key: adjustment.near.get(key, value_at(self.own_document, key))
-            for key in {**adjustment.near, **far}
+            key: adjustment.near.get(key, self.number(key)) for key in {**adjustment.near, **far}
         }
         if any(value is None for value in near.values()):
             return False
@@ -437,7 +438,7 @@ class Search:
         *others, (key, value) = own.near.items()
         if others:
             return own
-        given = value_at(self.own_document, key)
+        given = self.number(key)
         if not isinstance(value, float) or not isinstance(given, float) or value in (0.0, given):
             return own
         return replace(own, near={key: shortened(value, abs(value) - abs(given))})

@@ -81,6 +81,13 @@ def test_remedies_are_round_in_inches(name: str, text: str, tmp_path: Path) -> N
     assert text in [one.text for one in found]
 
 
+def test_remedies_keep_the_class_of_a_size(tmp_path: Path) -> None:
+    document = in_inches(DESIGNS["bore"], tmp_path / "d.toml")
+    document["blank"]["bore_diameter_in"] = "1.5 H7"
+    found = gearcam.remedies(gearcam.build(gearcam.design(document))).found
+    assert [one.text for one in found] == ['blank.bore_diameter_in = "0.9523 H7"']
+
+
 def test_findings_are_told_in_inches(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
