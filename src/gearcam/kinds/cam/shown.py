@@ -238,6 +238,37 @@ def _curvature(result: CamResult, measured: Measured) -> Files:
     return {"curvature.csv": table_bytes(columns)}
 
 
+def _caliper(result: CamResult, _: Measured) -> Files:
+    """Return the radius for each angle, for calipers or a dial gauge over a dividing head.
+
+    Files: caliper.csv.
+
+    Radius of the finished profile (of both walls of a groove, of both conjugate cams) from the axis
+    at equal steps of the polar angle in the frame of the part, counter-clockwise from its x axis as
+    in the DXF; of a translating cam heights above its lower edge at equal steps of x.
+    """
+    from gearcam.export.table import table_bytes
+    from gearcam.kinds.cam.calipers import caliper_table
+
+    return {"caliper.csv": table_bytes(caliper_table(result))}
+
+
+def _grinding(result: CamResult, _: Measured) -> Files:
+    """Return the lift of a grinding wheel.
+
+    Files: grinding.csv; of a groove grinding_inner.csv, grinding_outer.csv; of conjugate cams
+    grinding_1.csv, grinding_2.csv.
+
+    Lift of a wheel of `grinding_wheel_radius_mm` that rolls on the finished profile, straight above
+    the axis, over the cam angle; and its distance from the axis.
+    """
+    from gearcam.export.table import table_bytes
+    from gearcam.kinds.cam.calipers import grinding_tables
+
+    tables = grinding_tables(result)
+    return {f"grinding{ending}.csv": table_bytes(one) for ending, one in tables.items()}
+
+
 _SOLIDS: Final = """
     Files: cam.{format}; of conjugate cams cam1.{format}, cam2.{format}, cams.{format}.
 
@@ -281,5 +312,7 @@ FILES: Final[Mapping[str, Callable[..., Files]]] = {
     "report": report_files,
     "tool-path": _tool_path,
     "curvature": _curvature,
+    "caliper": _caliper,
+    "grinding": _grinding,
 }
 """What makes the files of each format: contents by name; what is measured on them is recorded."""

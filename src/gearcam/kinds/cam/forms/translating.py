@@ -173,6 +173,8 @@ class PlateOutput(CamOutputSpec):
         Travel in the assembly drawing.
     pose, motion_step : float
         It does not turn.
+    grinding_wheel_radius : None
+        Only cams that turn are ground below a wheel.
 
     Examples
     --------
@@ -183,6 +185,10 @@ class PlateOutput(CamOutputSpec):
 
     pose: float = fixed(0.0)
     motion_step: float = fixed(0.0)
+    caliper_step: float = positive_length(
+        default=1.0, doc="step along a translating cam in caliper.csv"
+    )
+    grinding_wheel_radius: None = fixed(None)
     travel_step: float = positive_length(
         default=1.0, doc="step of a translating cam's travel in motion.csv"
     )
