@@ -29,6 +29,7 @@ from gearcam.designs.table import table_of
 from gearcam.designs.validate import placed_faults
 from gearcam.dynamics.follower_checks import MOVING
 from gearcam.kinds.cam.forms.base import FORMS, VARIANTS
+from gearcam.kinds.cam.measured import measured_faults
 from gearcam.kinds.cam.motion import MOTION, circumstances
 from gearcam.kinds.cam.polydyne import polydyne_faults
 from gearcam.kinds.cam.tables import (
@@ -199,6 +200,7 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
             table = table_of("dynamics", FollowerDynamicsSpec)
             yield from placed_faults(breaches, table, document["dynamics"], ("dynamics",))
         yield from polydyne_faults(found, document)
+    yield from measured_faults(found, document, VARIANTS.meant(document))
     asked = unknowns(document)
     yield from _unsolvable(document, asked)
     if {"cam", "follower"} <= found.parts.keys():

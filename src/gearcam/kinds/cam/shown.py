@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 from gearcam.base.facts import Fact, Facts, Tree, extent
 from gearcam.base.numerals import FEW, formatted
 from gearcam.designs.outputs import MESHES
+from gearcam.kinds.cam.measured import measured_facts
 from gearcam.kinds.cam.wall_facts import pressure
 from gearcam.kinds.shared import peak_of
 from gearcam.parts.mass import part_facts
@@ -49,6 +50,7 @@ def _motion(result: CamResult) -> Tree:
         "total_lift": result.cam.motions[0].total_lift,
         "continuity": Fact(program.continuity, "continuity of the motion", unit=""),
         "deviation": _deviation(program, scale, unit),
+        "measured": measured_facts(result),
         **{
             key: Fact(
                 scale * peak,

@@ -13,7 +13,7 @@ from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.designs.design import Design
 from gearcam.designs.faults import Fault
 from gearcam.designs.outputs import MESHES, files_param, studies_param
-from gearcam.kinds.cam.public import MOTION, circumstances
+from gearcam.kinds.cam.public import MOTION, circumstances, measured_faults
 from gearcam.kinds.follower_tables import load_faults
 from gearcam.kinds.shared import (
     AccuracySpec,
@@ -166,6 +166,7 @@ class SpatialCamDesign(Design):
 
 def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     """Yield contradictions between the tables of a `document` of which parts are `found`."""
+    yield from measured_faults(found, document, "cylinder")
     if "follower" in found.parts:
         yield from load_faults(found, document, oscillating=found.parts["follower"].oscillating)
     if "cam" in found.parts and found.parts["cam"].walls == "upper" and document.get("spring"):
