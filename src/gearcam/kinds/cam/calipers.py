@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearcam.cams.caliper import caliper, lowered, wheel
+from gearcam.kinds.shared import steps_of_turn
 
 if TYPE_CHECKING:
     from gearcam.kinds.cam.result import CamResult
@@ -24,7 +25,7 @@ _DECIMALS: Final = 9
 """Decimals of lengths in mm: beyond what is measured, and without the noise of rounding."""
 
 _ROUNDING: Final = 1e-9
-"""Share of a step by which a turn or a travel may differ from whole steps."""
+"""Share of a step by which a travel may differ from whole steps."""
 
 Table = dict[str, "Array"]
 
@@ -54,7 +55,7 @@ def caliper_table(result: CamResult, step: float | None = None, number: int | No
     step = step or result.design.output.caliper_step
     if not result.carrier.around:
         return _heights(walls, step)
-    places = step * np.arange(float(math.ceil(2.0 * math.pi / step - _ROUNDING)))
+    places = steps_of_turn(step)
     read = {f"radius{wall.ending}_mm": np.round(caliper(wall, places), _DECIMALS) for wall in walls}
     return {"angle_deg": np.degrees(places), **read}
 

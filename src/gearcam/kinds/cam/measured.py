@@ -56,7 +56,7 @@ def measured_faults(found: Examined, document: Mapping[str, Any], form: str) -> 
     if form not in _FORMS:
         allowed = f"""kind = "cam" with cam.form = {" or ".join(f'"{one}"' for one in _FORMS)}"""
         message = f"gives the radii of a profile, which a {form} cam does not have"
-        yield Fault(("motion", "file"), message, motion.file, allowed)
+        yield Fault(("motion", "file"), message, getattr(motion, "file", None), allowed)
     for where in asked:
         yield Fault(where, "the measured profile gives it", "solve", "a length")
     if isinstance(drive, Mapping) and drive.get("polydyne") is True:

@@ -12,7 +12,7 @@ from gearcam.base.quantities import COUNT, LENGTH, param
 from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.designs.design import Design
 from gearcam.designs.faults import Fault
-from gearcam.designs.outputs import MESHES, files_param, studies_param
+from gearcam.designs.outputs import MESHES, caliper_step_param, files_param, studies_param
 from gearcam.kinds.cam.public import MOTION, circumstances, measured_faults
 from gearcam.kinds.follower_tables import load_faults
 from gearcam.kinds.shared import (
@@ -43,7 +43,7 @@ NAME: Final = "spatial-cam"
 _HERE: Final = "gearcam.kinds.spatial_cam"
 
 SPATIAL_FORMATS: Final = (
-    "dxf", "svg", *MESHES, "step", "csv", "report", "tool-path", "gcode",
+    "dxf", "svg", *MESHES, "step", "csv", "report", "tool-path", "gcode", "caliper",
 )  # fmt: skip
 """What ``output.files`` may list."""
 
@@ -61,6 +61,7 @@ class SpatialOutput(GriddedOutput):
 
     files: tuple[str, ...] = files_param(SPATIAL_FORMATS, NAME)
     studies: tuple[str, ...] = studies_param(NAME)
+    caliper_step: float = caliper_step_param("azimuth")
     path_tolerance: float = param(
         LENGTH,
         default=0.005,
