@@ -61,7 +61,20 @@ def caliper_table(result: CamResult, step: float | None = None, number: int | No
 
 
 def sheet_table(result: CamResult, number: int) -> Table:
-    """Return the table of radii, or heights, for the sheet of a part with a `number` from 0."""
+    """Return a short table for the sheet of a part.
+
+    Parameters
+    ----------
+    result : CamResult
+        The cam.
+    number : int
+        Number of the part, from 0.
+
+    Returns
+    -------
+    dict of str to (n,) array
+        Radii every 15 deg, or up to 24 heights, of the walls of the part (see `caliper_table`).
+    """
     if result.carrier.around:
         return caliper_table(result, SHEET_STEP, number)
     step = 10.0 ** math.floor(math.log10(result.program.period / _ROWS))

@@ -29,8 +29,7 @@ from gearcam.designs.table import table_of
 from gearcam.designs.validate import placed_faults
 from gearcam.dynamics.follower_checks import MOVING
 from gearcam.kinds.cam.forms.base import FORMS, VARIANTS
-from gearcam.kinds.cam.measured import measured_faults
-from gearcam.kinds.cam.motion import MOTION, circumstances
+from gearcam.kinds.cam.motion import MOTION, circumstances, measured_faults
 from gearcam.kinds.cam.polydyne import polydyne_faults
 from gearcam.kinds.cam.tables import (
     GOALS,

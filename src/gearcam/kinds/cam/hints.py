@@ -19,7 +19,7 @@ from gearcam.base.numerals import DIGITS, formatted, shortened
 from gearcam.cams.checks import KIND, driven
 from gearcam.designs.design import document_of, value_at
 from gearcam.kinds.cam.forms.base import lift_program
-from gearcam.kinds.cam.motion import by_rows
+from gearcam.kinds.cam.motion import by_rows, of_radii
 from gearcam.kinds.cam.tables import CAM_FORMATS
 from gearcam.kinds.sizes import LARGER, SizeAdvice
 from gearcam.laws.motion_table import MotionTable
@@ -77,7 +77,7 @@ def hinted(result: MadeCam, findings: tuple[Finding, ...]) -> tuple[Finding, ...
             lambda finding: [sentence(finding.code, _motion_of(result, finding))],
         ),
     }
-    hints |= {} if getattr(result.design.motion, "of_radii", False) else sizes
+    hints |= {} if of_radii(result.design.motion) else sizes
     return tuple(
         replace(one, message=" ".join([one.message, *hints[one.code](one)]))
         if one.code in hints

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.facts import Fact, Facts, Tree, extent
 from gearcam.base.numerals import FEW, formatted
 from gearcam.designs.outputs import MESHES
-from gearcam.kinds.cam.measured import measured_facts
+from gearcam.kinds.cam.motion import of_radii
 from gearcam.kinds.cam.wall_facts import pressure
 from gearcam.kinds.shared import peak_of
 from gearcam.parts.mass import part_facts
@@ -50,7 +50,7 @@ def _motion(result: CamResult) -> Tree:
         "total_lift": result.cam.motions[0].total_lift,
         "continuity": Fact(program.continuity, "continuity of the motion", unit=""),
         "deviation": _deviation(program, scale, unit),
-        "measured": measured_facts(result),
+        "measured": _measured(result),
         **{
             key: Fact(
                 scale * peak,
@@ -89,6 +89,16 @@ def _timed(result: CamResult) -> Tree:
         place = f"at {drive.named}"
         tree[key + column.removeprefix(name)] = Fact(peak, meaning, place=place, shown=True)
     return tree
+
+
+def _measured(result: CamResult) -> Tree | None:
+    """Return the distance of the profile from the radii of a motion that was measured."""
+    if not of_radii(result.design.motion):
+        return None
+    from gearcam.kinds.cam.measured import measured_facts
+
+    motion: Any = result.design.motion
+    return measured_facts(motion.given(oscillating=False), result.cam.walls[0])
 
 
 def _deviation(program: Program, scale: float, unit: str) -> Fact | None:
