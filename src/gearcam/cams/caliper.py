@@ -118,7 +118,7 @@ def wheel(wall: Wall, angles: Array, radius: float) -> Array:
     edges = np.flatnonzero(kept.corner)
     seen = kept.at(edges, kept.start[edges])[0][:, None] * look
     if flat:
-        return np.maximum(last, seen.real.max(axis=0))
+        return np.fmax(last, seen.real.max(axis=0))
     with np.errstate(invalid="ignore"):  # no number beside the circle about an edge
         on_edge = seen.real + wall.side * np.sqrt((radius - seen.imag) * (radius + seen.imag))
     if wall.side > 0:

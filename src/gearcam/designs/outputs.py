@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -49,12 +48,6 @@ def process_param() -> Any:
 def pose_param(word: str, doc: str) -> Any:
     """Return the field of the angle of the assembly drawing: the `word` of its key, its `doc`."""
     return param(ANGLE, default=0.0, ge=-36000, le=36000, word=word, doc=doc)
-
-
-def caliper_step_param(angle: str) -> Any:
-    """Return the field of the step of an `angle` in ``caliper.csv``."""
-    doc = f"step of the {angle} in caliper.csv"
-    return param(ANGLE, default=math.radians(1.0), ge=0.01, le=90, doc=doc)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -28,14 +28,7 @@ from gearcam.base.quantities import (
     positive_length,
 )
 from gearcam.base.rules import Breach, needs
-from gearcam.designs.outputs import (
-    FORMATS,
-    OutputSpec,
-    caliper_step_param,
-    files_param,
-    pose_param,
-    studies_param,
-)
+from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, pose_param, studies_param
 from gearcam.dynamics.integrate import METHODS
 from gearcam.parts.blank import OPENING_RULES, ZERO_MARK, WheelBlank, widening_rules
 
@@ -332,7 +325,9 @@ class CamOutputSpec(OutputSpec):
         example=8,
         doc="radius of the cutter of the tool path; the follower's, or half a groove, if left out",
     )
-    caliper_step: float = caliper_step_param("polar angle")
+    caliper_step: float = param(
+        ANGLE, default=math.radians(1), ge=0.01, le=90, doc="step of the polar angle in caliper.csv"
+    )
     grinding_wheel_radius: float | Flat | None = param(
         LENGTH,
         default=None,

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.brought import group_of
 from gearcam.base.display import ShortRepr
-from gearcam.base.quantities import COUNT, LENGTH, param
+from gearcam.base.quantities import ANGLE, COUNT, LENGTH, param
 from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.designs.design import Design
 from gearcam.designs.faults import Fault
-from gearcam.designs.outputs import MESHES, caliper_step_param, files_param, studies_param
+from gearcam.designs.outputs import MESHES, files_param, studies_param
 from gearcam.kinds.cam.public import MOTION, circumstances, measured_faults
 from gearcam.kinds.follower_tables import load_faults
 from gearcam.kinds.shared import (
@@ -61,7 +62,9 @@ class SpatialOutput(GriddedOutput):
 
     files: tuple[str, ...] = files_param(SPATIAL_FORMATS, NAME)
     studies: tuple[str, ...] = studies_param(NAME)
-    caliper_step: float = caliper_step_param("azimuth")
+    caliper_step: float = param(
+        ANGLE, default=math.radians(1), ge=0.01, le=90, doc="step of the azimuth in caliper.csv"
+    )
     path_tolerance: float = param(
         LENGTH,
         default=0.005,
