@@ -26,8 +26,9 @@ from gearcam.base.adjustments import Adjustment
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import formatted, rounded_down, shortened
+from gearcam.cams.carriers import unit
 from gearcam.cams.follow import follow
-from gearcam.cams.followers import Follower
+from gearcam.cams.followers import Follower, Round
 from gearcam.laws.motion_table import program_of_rows
 from gearcam.laws.phases_of_lift import TURN
 from gearcam.laws.program import Program, stretches_of
@@ -49,6 +50,15 @@ _ROOT = 1e-13
 
 _OFF = 1e-3
 """Height of the follower above the profile, mm, from which on it does not reach it."""
+
+_PER_WAVE = 6
+"""Rows for each wave of a smoothed curve (see `gearcam.laws.motion_table`)."""
+
+_LITTLE = 1e-6
+"""Share of a radius with which the change of a lift is computed."""
+
+_ASTRIDE = 2.0
+"""Safety factor: a follower touches where the error of the curve slopes too."""
 
 _SCATTER = 0.05
 """Height, mm, up to which the scatter of the radii may be all that it does not reach."""
@@ -77,6 +87,12 @@ class MeasuredProfile(ShortRepr):
     count: int
     follower: Follower
     clockwise: bool = False
+
+    @property
+    def pointed(self) -> Round | None:
+        """The follower if it is a point, whose position is that of the radius at it."""
+        found = self.follower
+        return found if isinstance(found, Round) and not found.radius else None
 
     def radius(self, phi: Array) -> list[Array]:
         """Return the radius and two derivatives at angles (n,) of the cam turned the usual way."""
@@ -111,19 +127,36 @@ class MeasuredProfile(ShortRepr):
             _, slope, bend = self._rest(phi, self.theta).c
             return -np.asarray(slope), -2.0 * np.asarray(bend)
 
-        found = newton_in_bracket(falling, near - reach, near + reach, near, _ROOT)
+        ends = near - reach, near + reach
+        if point := self.pointed:
+            found = bracketed_root(
+                lambda phi: np.angle(
+                    point.centre(point.on_circle(self.radius(phi)[0])) * unit(-phi - self.theta)
+                ),
+                *ends,
+                _ROOT,
+            )
+        else:
+            found = newton_in_bracket(falling, *ends, near, _ROOT)
         return np.append(found := np.unwrap(found), found[:1] - TURN)
 
     @cached_property
     def lift(self) -> Array:
         """The lift there, mm or rad, (m,)."""
-        return np.asarray(self._rest(self.contact[:-1], self.theta, 0).c[0]) - self.follower.start
+        if self.pointed:
+            position = self.pointed.on_circle(self.radius(self.contact[:-1])[0])
+        else:
+            position = np.asarray(self._rest(self.contact[:-1], self.theta, 0).c[0])
+        return position - self.follower.start
 
     @cached_property
     def steep(self) -> float:
         """By how much the lift changes with the radius at the contact, at most."""
         phi, (s, c) = self.contact[:-1], sin_cos(self.contact[:-1] + self.theta)
         r = self.radius(phi)[0]
+        if self.pointed:
+            more = self.pointed.on_circle((1.0 + _LITTLE) * r) - self.follower.start - self.lift
+            return float((more / (_LITTLE * r)).max())
         return float(np.abs(self.follower.rest(Jet([r * c, c]), Jet([r * s, s]))[0].c[1]).max())
 
     @cached_property
@@ -133,14 +166,14 @@ class MeasuredProfile(ShortRepr):
         # an error of the curve passes the follower as fast as its contact
         fast = max(1.0, float(np.abs(np.diff(self.contact)).max()) / float(self.theta[1]))
         errors = (
-            own + self.steep * fast**order * error
+            own + _ASTRIDE * self.steep * fast**order * error
             for order, (own, error) in enumerate(zip(made.errors, self.curve.errors, strict=True))
         )
         return replace(made, errors=tuple(errors), fall=self.curve.fall)
 
     def standing(self, tolerance: float) -> Program:
         """Return the same lift with dwells where it changes less than it is known to."""
-        made, cutoff = self.program, 0.5 * self.count
+        made, cutoff = self.program, (len(self.curve.knots) - 1) / _PER_WAVE
         level = max(self.steep * tolerance, made.errors[0])
         phases = stretches_of(made.lift, self.theta, self.lift, level, cutoff)
         return replace(made, stretches=phases)
@@ -149,9 +182,11 @@ class MeasuredProfile(ShortRepr):
     def highest(self) -> tuple[float, float]:
         """The largest height of the follower above the profile, mm, and its polar angle, rad.
 
-        Looked for midway between neighbouring contacts: a hollow between them is not reached.
+        Midway between neighbouring contacts, where the follower is held by them: below 0 unless the
+        curve is hollow between them.
         """
-        phi, theta = 0.5 * (self.contact[:-1] + self.contact[1:]), np.append(self.theta, TURN)
+        left, right, theta = self.contact[:-1], self.contact[1:], np.append(self.theta, TURN)
+        phi = 0.5 * (left + right)
 
         def along(theta: Array) -> Array:
             return np.asarray(self._rest(phi, theta, 1).c[1])
@@ -159,8 +194,10 @@ class MeasuredProfile(ShortRepr):
         ends = along(theta[:-1]), along(theta[1:])
         root = bracketed_root(along, theta[:-1], theta[1:], _ROOT, ends)
         place = np.where(ends[0] * ends[1] < 0.0, root, theta[:-1])
-        lift = self.program.derivatives(place, 0)[0] + self.follower.start
-        height = self.follower.lever * (lift - np.asarray(self._rest(phi, place, 0).c[0]))
+        beside, middle, other = (
+            np.asarray(self._rest(one, place, 0).c[0]) for one in (left, phi, right)
+        )
+        height = self.follower.lever * (np.maximum(beside, other) - middle)
         worst = int(np.argmax(height))
         return float(height[worst]), math.pi - phi[worst] if self.clockwise else float(phi[worst])
 
@@ -199,7 +236,7 @@ def demand_reached(
     InfeasibleError
         With the largest radius that reaches it.
     """
-    height, angle = profile.highest
+    height, angle = (0.0, 0.0) if profile.pointed else profile.highest
     if height <= _OFF:
         return
     changes = list(_changes(profile, key, height, tolerance))
