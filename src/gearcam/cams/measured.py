@@ -19,6 +19,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -26,9 +27,9 @@ from gearcam.base.adjustments import Adjustment
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import formatted, rounded_down, shortened
-from gearcam.cams.carriers import unit
+from gearcam.cams.carriers import ROTATING, unit
 from gearcam.cams.follow import follow
-from gearcam.cams.followers import Follower, Round
+from gearcam.cams.followers import Follower
 from gearcam.laws.motion_table import program_of_rows
 from gearcam.laws.phases_of_lift import TURN
 from gearcam.laws.program import Program, stretches_of
@@ -89,10 +90,15 @@ class MeasuredProfile(ShortRepr):
     clockwise: bool = False
 
     @property
-    def pointed(self) -> Round | None:
-        """The follower if it is a point, whose position is that of the radius at it."""
-        found = self.follower
-        return found if isinstance(found, Round) and not found.radius else None
+    def pointed(self) -> bool:
+        """Whether the follower is a point, whose position is that of the radius at it."""
+        return math.isinf(self.follower.bend)
+
+    def _behind(self, phi: Array) -> Array:
+        """Return by how much a point stands on points of the curve behind the cam angles, rad."""
+        point: Any = self.follower
+        place = self.radius(phi)[0] * unit(phi)
+        return ROTATING.stand(point, place, self.theta)[0] - self.theta
 
     def radius(self, phi: Array) -> list[Array]:
         """Return the radius and two derivatives at angles (n,) of the cam turned the usual way."""
@@ -128,14 +134,8 @@ class MeasuredProfile(ShortRepr):
             return -np.asarray(slope), -2.0 * np.asarray(bend)
 
         ends = near - reach, near + reach
-        if point := self.pointed:
-            found = bracketed_root(
-                lambda phi: np.angle(
-                    point.centre(point.on_circle(self.radius(phi)[0])) * unit(-phi - self.theta)
-                ),
-                *ends,
-                _ROOT,
-            )
+        if self.pointed:
+            found = bracketed_root(self._behind, *ends, _ROOT)
         else:
             found = newton_in_bracket(falling, *ends, near, _ROOT)
         return np.append(found := np.unwrap(found), found[:1] - TURN)
@@ -144,7 +144,7 @@ class MeasuredProfile(ShortRepr):
     def lift(self) -> Array:
         """The lift there, mm or rad, (m,)."""
         if self.pointed:
-            position = self.pointed.on_circle(self.radius(self.contact[:-1])[0])
+            position = self.follower.on_circle(self.radius(self.contact[:-1])[0])
         else:
             position = np.asarray(self._rest(self.contact[:-1], self.theta, 0).c[0])
         return position - self.follower.start
@@ -155,7 +155,7 @@ class MeasuredProfile(ShortRepr):
         phi, (s, c) = self.contact[:-1], sin_cos(self.contact[:-1] + self.theta)
         r = self.radius(phi)[0]
         if self.pointed:
-            more = self.pointed.on_circle((1.0 + _LITTLE) * r) - self.follower.start - self.lift
+            more = self.follower.on_circle((1.0 + _LITTLE) * r) - self.follower.start - self.lift
             return float((more / (_LITTLE * r)).max())
         return float(np.abs(self.follower.rest(Jet([r * c, c]), Jet([r * s, s]))[0].c[1]).max())
 

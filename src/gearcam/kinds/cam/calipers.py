@@ -52,10 +52,10 @@ def caliper_table(result: CamResult, step: float | None = None, number: int | No
     walls = [lowered(wall, result.design.blank.clearance) for wall in walls]
     if number is not None and len(walls) == len(result.parts):
         walls = [walls[number]]
-    step = step or result.design.output.caliper_step
+    output: Any = result.design.output
     if not result.carrier.around:
-        return _heights(walls, step)
-    places = steps_of_turn(step)
+        return _heights(walls, step or output.height_step)
+    places = steps_of_turn(step or output.caliper_step)
     read = {f"radius{wall.ending}_mm": np.round(caliper(wall, places), _DECIMALS) for wall in walls}
     return {"angle_deg": np.degrees(places), **read}
 

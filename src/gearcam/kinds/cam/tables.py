@@ -334,8 +334,8 @@ class CamOutputSpec(OutputSpec):
         gt=0,
         le=LONGEST,
         example=50,
-        doc="radius of the wheel whose lift grinding.csv has; flat: of a flat wheel; the "
-        "follower's, or half a groove, if left out",
+        doc="radius of the grinding wheel of grinding.csv; flat: of a flat one; the follower's, or "
+        "half a groove, if left out",
     )
 
 
