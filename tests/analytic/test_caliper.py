@@ -161,6 +161,10 @@ def test_a_wheel_that_does_not_reach_a_hollow_is_refused_with_one_that_does() ->
             wheel(wall, ANGLES, radius)
         assert "a wheel up to 26.49 mm" in told.value.nearest
     wheel(wall, ANGLES, 26.49)
+    # a point whose velocity jumps makes an inner corner
+    vars(wall)["profile_radius"] = (0.0, 0.0)
+    with pytest.raises(InfeasibleError, match="no wheel reaches an inner corner"):
+        wheel(wall, ANGLES, 1.0)
     # the parallel of a hollow that is too tight crosses itself
     vars(wall)["profile_radius"] = (0.0, math.inf)
     assert deepest < 30.0

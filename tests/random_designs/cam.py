@@ -116,11 +116,11 @@ def _ground(d: Draw, design: dict[str, Any], size: float) -> None:
     output, slides = design["output"], design["cam"].get("form") == "translating"
     if d.chance(0.1):
         output["caliper_step_mm" if slides else "caliper_step_deg"] = short(d.log(1, 40))
-    if slides or not d.chance(0.15):
+    pointed = design["follower"]["type"] in ("knife-edge", "point")  # it makes inner corners
+    if slides or pointed or not d.chance(0.15):
         return
     output["files"] = [*output["files"], "grinding"]
-    blunt = design["follower"]["type"] not in ("knife-edge", "point")
-    if not blunt or d.chance(0.5):
+    if d.chance(0.5):
         output["grinding_wheel_radius_mm"] = short(size * d.log(0.01, 0.1))
     elif design["follower"]["type"] == "flat" and d.chance(0.5):
         output["grinding_wheel_radius_mm"] = "flat"

@@ -114,7 +114,7 @@ def wheel(wall: Wall, angles: Array, radius: float) -> Array:
         far = np.abs(points + radius * normals)
     first, last = (_last(wall, number, far, len(angles), sign) for sign in (-1, 1))
     if np.nanmax(np.abs(last - first), initial=0.0) > _ALIKE * np.abs(points).max():
-        raise _beyond_reach(wall, radius, 0.0)
+        raise _beyond_reach(wall, radius, None)
     edges = np.flatnonzero(kept.corner)
     seen = kept.at(edges, kept.start[edges])[0][:, None] * look
     if flat:
@@ -184,13 +184,13 @@ def _crossings(
     return number, *place(np.where(within, root, nearer))
 
 
-def _beyond_reach(wall: Wall, radius: float, limit: float) -> InfeasibleError:
-    """Return the refusal of a wheel; `limit` is the largest that fits hollows, if that is known."""
+def _beyond_reach(wall: Wall, radius: float, limit: float | None) -> InfeasibleError:
+    """Return the refusal of a wheel; `limit` is the smallest concave radius if it decides."""
     what, near = f"the grinding wheel does not reach the whole {wall.called}", None
-    note = "a smaller wheel"
+    note = "a smaller wheel" if limit is None else "no wheel reaches an inner corner"
     if limit:
         near = float(rounded_down(limit, 4))
         note = f"a wheel up to {formatted(near)} mm, the smallest concave radius"
     if math.isinf(radius):
-        return InfeasibleError(what, where=WHEEL, value=radius, nearest=note)
+        return InfeasibleError(what, where=WHEEL, nearest=note)
     return beyond_limit(what, WHEEL, radius, limit or None, note, near=near)
