@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from gearcam.base.errors import InfeasibleError
 from gearcam.cams.caliper import caliper, lowered, wheel
 from gearcam.kinds.shared import steps_of_turn
 
@@ -104,7 +105,7 @@ def grinding_tables(result: CamResult) -> dict[str, Table]:
     Parameters
     ----------
     result : CamResult
-        A cam that turns.
+        The cam.
 
     Returns
     -------
@@ -115,8 +116,11 @@ def grinding_tables(result: CamResult) -> dict[str, Table]:
     Raises
     ------
     InfeasibleError
-        If the wheel does not reach a whole wall.
+        If the cam slides, or the wheel does not reach a whole wall.
     """
+    if not result.carrier.around:
+        what, rule = "the wheel of grinding.csv is above a cam that turns", "other files"
+        raise InfeasibleError(what, where="output.files", nearest=rule)
     theta, output = result.angles, result.design.output
     theta = theta[theta < result.program.period * (1.0 - _ROUNDING)]
     tables = {}

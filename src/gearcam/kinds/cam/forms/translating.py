@@ -249,9 +249,6 @@ class Translating(Form[TranslatingCam, PlateSpec, PlateFollower]):
     def faults(cls, parts: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator[Fault]:  # noqa: ARG003
         """Yield contradictions between the tables of a design (see `Form.faults`)."""
         follower, cam = parts["follower"], parts["cam"]
-        if "output" in parts and "grinding" in parts["output"].files:
-            message, rule = "the wheel of this table is above a cam that turns", "other files"
-            yield Fault(("output", "files"), message, "grinding", rule)
         if cam.walls != "both":
             return
         if follower.type != "roller":
