@@ -632,6 +632,14 @@ CAM_NUMBERS: dict[str, dict[str, Number]] = {
         "motion.peak_acceleration": (84 * math.sqrt(5) / 25 * 12 / READ**2, 0.3),
         "motion.peak_jerk": (52.5 * 12 / READ**3, 2.0),
     },
+    "caliper_cam": {
+        # 4-5-6-7 by 18 deg, read to 0.01 mm with a scatter of 4 um, smoothed by 0.02 mm at most
+        "motion.measured.largest_mm": (0.0, 0.02),
+        "motion.total_lift": (18.0, 0.03),
+        "motion.peak_velocity": (35 / 16 * 18 / math.radians(120), 0.1),
+        "motion.peak_acceleration": (84 * math.sqrt(5) / 25 * 18 / math.radians(120) ** 2, 0.8),
+        "cam.start_angle_deg": (DEG * math.acos((78**2 + 70**2 - 45**2) / (2 * 78 * 70)), 1e-12),
+    },
     "tappet": {
         "cam.base_radius_mm": (35.0, 1e-13),
         # 15, -24, 10 of the fourth to sixth power: 60*x^3*(1 - x)^2 is largest at 3/5

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
+from shapely import Point
 
+from gearcam.cams.caliper import caliper
+from gearcam.cams.carriers import unit
 from gearcam.cams.precision import sensitivities
 from gearcam.cams.wall import Wall
 from gearcam.kinds.cam.given_profile import followed
@@ -41,6 +44,7 @@ def doubts(result: CamResult) -> Iterator[tuple[str, str]]:
     """
     theta = result.program.period / _ANGLES * (np.arange(float(_ANGLES)) + 0.5)
     for wall, contour in zip(result.cam.walls, result.profiles, strict=True):
+        yield from _radii_beside_the_outline(wall)
         bulges = np.zeros(len(contour.points))
         columns, _, _ = followed(wall, contour.points, bulges, theta, result.design.limits)
         off = np.abs(columns["difference"])
@@ -56,6 +60,20 @@ def doubts(result: CamResult) -> Iterator[tuple[str, str]]:
         if np.nanmax(off, initial=0.0) > _ALIKE:
             at = wall.carrier.driver.text(float(theta[int(np.nanargmax(off))]))
             yield "precision", f"{wall.called} {wall.key}: an error of the profile at {at}"
+
+
+def _radii_beside_the_outline(wall: Wall) -> Iterator[tuple[str, str]]:
+    """Yield the radii for a caliper whose places are not on the polygon."""
+    if not wall.carrier.around:
+        return
+    angles = np.linspace(0.0, 6.2, _ANGLES)
+    place = caliper(wall, angles) * unit(angles)
+    outline: Any = wall.contour.polygon.exterior
+    off = np.array([outline.distance(Point(one.real, one.imag)) for one in place.tolist()])
+    worst = int(np.argmax(off))
+    size = _ROUNDING * np.abs(place).max()
+    if not off[worst] <= wall.tolerance + size:
+        yield "caliper", f"{wall.called} {wall.key}: {off[worst]} beside it at {angles[worst]} rad"
 
 
 def _room(wall: Wall, theta: Array) -> Array:

@@ -29,7 +29,7 @@ _DEGREES: Final = 40
 _SHARES: Final = {
     "svg": 0.8, "dxf": 0.3, "inspection": 0.3, "cut-svg": 0.2, "drawing-svg": 0.2,
     "drawing-dxf": 0.05, **dict.fromkeys(MESHES, 0.06), "step": 0.01,
-    "tool-path": 0.2, "curvature": 0.3, "report": 0.06,
+    "tool-path": 0.2, "curvature": 0.3, "caliper": 0.2, "report": 0.06,
 }  # fmt: skip
 """Share of cams with each kind of file, by its cost."""
 
@@ -89,6 +89,41 @@ def motion_of_turn(d: Draw, lift: float, unit: str) -> dict[str, Any]:
     if d.chance(0.4):
         motion[f"smoothing_tolerance_{unit}"] = short(lift * d.log(1e-5, 1e-2))
     return motion
+
+
+def _measured(d: Draw, design: dict[str, Any]) -> None:
+    """Change a few discs to their radii, of a convex profile that any follower reaches."""
+    cam, follower = design["cam"], design["follower"]
+    solved = "solve" in [*cam.values(), *follower.values()]
+    if not d.chance(0.06) or solved or cam.get("form", "disc") != "disc":
+        return
+    if design.get("drive", {}).get("polydyne"):
+        return
+    end = follower.get("roller_radius_mm", 0) + follower.get("dome_radius_mm", 0)
+    base = cam.get("base_radius_mm") or cam["prime_radius_mm"] - end
+    lift, count = 0.1 * base, d.whole(24, 72)
+    angles = [short(360 * k / count) for k in range(count)]
+    waves = [0.5 - 0.5 * math.cos(math.radians(angle)) for angle in angles]
+    design["motion"] = {
+        "angle_deg": angles, "radius_mm": [round(base + lift * wave, 9) for wave in waves]
+    }  # fmt: skip
+    if d.chance(0.4):
+        design["motion"]["radius_tolerance_mm"] = short(lift * d.log(1e-5, 1e-2))
+
+
+def _ground(d: Draw, design: dict[str, Any], size: float) -> None:
+    """Ask for the tables of calipers and wheels of a few cams, in other steps."""
+    output, slides = design["output"], design["cam"].get("form") == "translating"
+    if d.chance(0.1):
+        output["caliper_step_mm" if slides else "caliper_step_deg"] = short(d.log(1, 40))
+    pointed = design["follower"]["type"] in ("knife-edge", "point")  # it makes inner corners
+    if slides or pointed or not d.chance(0.15):
+        return
+    output["files"] = [*output["files"], "grinding"]
+    if d.chance(0.5):
+        output["grinding_wheel_radius_mm"] = short(size * d.log(0.01, 0.1))
+    elif design["follower"]["type"] == "flat" and d.chance(0.5):
+        output["grinding_wheel_radius_mm"] = "flat"
 
 
 def _segment(d: Draw, to: float, unit: str) -> dict[str, Any]:
@@ -333,6 +368,8 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     dynamics(d, made, swings)
     if made["cam"].get("form", "disc") == "disc" and d.chance(0.06):
         _solved(d, made, size)
+    _measured(d, made)
+    _ground(d, made, size)
     _studies(d, made, size)
     disc = made["cam"].get("form", "disc") == "disc"
     seek(made, index, *(GOALS if disc else ("cam.pressure_angle_deg.max", "motion.peak_jerk")))

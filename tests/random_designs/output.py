@@ -13,7 +13,8 @@ _CHEAP: Final = ("svg", "inspection")
 """Kinds of files that are cheap for any number of vertices."""
 
 _COLUMNS: Final = (
-    *("phi1_deg", "ratio", "phi2_deg", "r1", "x", "y"), "theta_deg", "lift_mm", "lift_deg"
+    *("phi1_deg", "ratio", "phi2_deg", "r1", "x", "y"), "theta_deg", "lift_mm", "lift_deg",
+    "angle_deg", "radius_mm",
 )  # fmt: skip
 """Keys that can be columns of a CSV file."""
 
@@ -243,7 +244,8 @@ def tables_as_files(d: Draw, document: Mapping[str, Any], name: str) -> dict[str
         columns = [key for key in _COLUMNS if isinstance(table.get(key), list)]
         given = [table[key] for key in columns]
         is_table = "table" in (table.get("type"), table.get("law")) or "theta_deg" in columns
-        if columns and is_table and d.chance(0.5):
+        measured = "radius_mm" in columns  # which a design itself cannot have
+        if measured or (columns and is_table and d.chance(0.5)):
             file = f"{name}-{number}.csv"
             table["file"] = file
             for key in columns:

@@ -27,7 +27,7 @@ _KEPT: Final = ("type", "angle_deg", "lift_mm", "lift_deg")
 """Keys of a phase with any law."""
 
 _SHARES: Final = {
-    "svg": 0.5, "dxf": 0.2, **dict.fromkeys(MESHES, 0.06), "report": 0.03,
+    "svg": 0.5, "dxf": 0.2, **dict.fromkeys(MESHES, 0.06), "report": 0.03, "caliper": 0.1,
 }  # fmt: skip
 """Share of cams with each kind of file, by its cost."""
 
@@ -160,4 +160,6 @@ def _output(d: Draw) -> dict[str, Any]:
         output["motion_step_deg"] = short(d.log(0.5, 10))
     if d.chance(0.3):
         output["theta_deg"] = short(d.even(-400, 400))
+    if d.chance(0.1):
+        output["caliper_step_deg"] = short(d.log(1, 40))
     return output

@@ -268,6 +268,7 @@ _ALIASES: Final = {
     r"^Row$": "row of float",
     r"float \| Solve": 'float or "solve"',
     r"float \| Hertz": 'float or "hertz"',
+    r"float \| Flat": 'float or "flat"',
     r"^Given$": "str, function, or tuple of function and derivatives",
 }
 """Names of types in docstrings."""

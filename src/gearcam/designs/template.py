@@ -144,7 +144,7 @@ def _lines(kind: DesignKind, name: str, process: str) -> Iterator[str]:
             yield from _table(head, table, {**one, **more.get(title, {})}, note)
 
 
-def _preset(kind: DesignKind, process: str) -> dict[str, dict[str, Any]]:
+def _preset(kind: DesignKind, process: str) -> Mapping[str, Mapping[str, Any]]:
     """Return the tables of a template for a `process`: those of the kind, and marks as it makes."""
     own = kind.processes[process]
     marks = [name for name in _MARKS if name in kind.table("blank").entries]

@@ -299,6 +299,11 @@ def study_accuracy(result: Result, progress: Progress) -> StudyResult:
     )
 
 
+def steps_of_turn(step: float) -> Array:
+    """Return angles from 0 to below a turn in steps, rad."""
+    return step * np.arange(float(math.ceil(2.0 * math.pi / step - 1e-9)))
+
+
 @dataclass(frozen=True, kw_only=True)
 class GriddedOutput(OutputSpec):
     """Which files and studies of a cam in space are written, and how fine (see `OutputSpec`).

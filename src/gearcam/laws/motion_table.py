@@ -1,7 +1,11 @@
 """Motion tables: the lift of a follower over a turn of the cam, by rows of angle and lift.
 
+Instead of the lift a file may have the radius of a profile over its polar angle, as measured with a
+caliper. The same curve is then laid through the radii, and `gearcam.cams.measured` puts the
+follower on it.
+
 Refused by reading: angles that do not rise or do not fill the turn, a lift that does not repeat or
-is constant.
+is constant; radii that are not above 0, or too far apart.
 
 Without a tolerance the lift is the closed curve through the rows with the least integral of the
 squared jerk: quintics between rows, C4 everywhere, whose error falls with the sixth power of the
@@ -17,7 +21,7 @@ Source: C. de Boor, A Practical Guide to Splines, chapter XIV (the smoothing spl
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import islice
 from typing import Final
@@ -55,6 +59,9 @@ _OPEN: Final = 1.5
 """Gap at the end of the turn over the widest step above which rows are missing: a last row that is
 left out leaves one step."""
 
+_APART: Final = math.radians(15.0)
+"""Largest step between measured radii: a rise of 60 deg has four then."""
+
 _DEG: Final = math.radians(1.0)
 
 _PER_WAVE: Final = 6
@@ -71,7 +78,8 @@ class MotionTable(FromFile):
     """The lift over a whole turn as rows in a CSV file or in the design itself.
 
     Lifts and their tolerance are in mm, or in rad if the follower oscillates. The rows may begin at
-    any angle; the last one may repeat the first after a turn, or be left out.
+    any angle; the last one may repeat the first after a turn, or be left out. A file may have the
+    radii of a profile over the polar angle in the cam's frame instead.
 
     Examples
     --------
@@ -86,7 +94,8 @@ class MotionTable(FromFile):
         TEXT,
         default=None,
         example="motion.csv",
-        doc="CSV file, up to 3600 rows: theta_deg and lift_mm or lift_deg",
+        doc="CSV file, up to 3600 rows: theta_deg and lift_mm or lift_deg; of a measured profile "
+        "angle_deg and radius_mm",
     )
     theta: Row | None = param(
         ANGLE,
@@ -117,6 +126,13 @@ class MotionTable(FromFile):
         when=("translating",),
         other=Param(ANGLE, gt=0, doc="largest distance from a row (oscillating follower)"),
     )
+    radius_tolerance: float | None = param(
+        LENGTH,
+        default=None,
+        ge=FINEST,
+        example=0.02,
+        doc="largest distance from a measured radius, of a file that has radii; 0 if left out",
+    )
 
     def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""
@@ -127,6 +143,16 @@ class MotionTable(FromFile):
         elif self.theta is None or self.lift is None:
             missing = "theta" if self.theta is None else "lift"
             yield missing, None, "is missing: a table has both columns, or a file", rule
+
+    @property
+    def of_radii(self) -> bool:
+        """Whether the rows are radii of a profile: they have no lift."""
+        try:
+            head = self.rows.cells[0] if self.rows else []
+        except ColumnsError:
+            return False
+        starts = [cell.lower()[:4] for cell in head]
+        return "radi" in starts and "lift" not in starts
 
     def turn_problems(self, *, oscillating: bool) -> Iterator[Breach]:
         """Yield the first fault of the rows for a follower: field, index, message, allowed.
@@ -144,9 +170,15 @@ class MotionTable(FromFile):
 
         def check(theta: Array, lift: Array) -> Iterator[Breach]:
             yield from _angle_problems(theta)
-            yield from self._lift_problems(theta, lift, oscillating)
+            yield from (
+                self._radius_problems(theta, lift)
+                if self.of_radii
+                else self._lift_problems(theta, lift, oscillating)
+            )
 
-        needed = " and ".join(_columns(oscillating))
+        needed = " and ".join(self._columns(oscillating))
+        if not self.of_radii:
+            needed += ", or with angle_deg and radius_mm of a measured profile"
         problems = self.row_problems(
             ("theta", "lift"), lambda: self._rows(oscillating), check, needed
         )
@@ -156,17 +188,48 @@ class MotionTable(FromFile):
         """Return angles, rad, lifts, mm or rad, and their lines in the file, if there is one."""
         if self.rows is None:
             return np.array(self.theta, dtype=float), np.array(self.lift, dtype=float), []
-        columns, wrong = _columns(oscillating), self.rows.spelt(_columns(not oscillating)[1])
+        columns, other = self._columns(oscillating), self._columns(not oscillating)
+        wrong = columns != other and self.rows.spelt(other[1])
         if wrong and not self.rows.spelt(columns[1]):
             kind = "an oscillating" if oscillating else "a translating"
             message = f"{wrong} is of the wrong kind for {kind} follower"
             raise ColumnsError(f"line {self.rows.lines[0]}: {message}")
         points, lines = self.rows.columns(columns)
-        theta, lift = points.T * [[_DEG], [_DEG if oscillating else 1.0]]
+        theta, lift = points.T * [[_DEG], [self._unit(oscillating)[0]]]
         return theta, lift, lines
 
+    def _columns(self, oscillating: bool) -> tuple[str, str]:
+        if self.of_radii:
+            return "angle_deg", "radius_mm"
+        return "theta_deg", "lift_deg" if oscillating else "lift_mm"
+
+    def _unit(self, oscillating: bool) -> tuple[float, str]:
+        """Return the unit of the rows in a file, in mm or rad, and its name."""
+        return (_DEG, "deg") if oscillating and not self.of_radii else (1.0, "mm")
+
+    def _radius_problems(self, theta: Array, radius: Array) -> Iterator[Breach]:
+        for row in np.flatnonzero(~((radius > 0.0) & (radius <= LONGEST))).tolist():
+            state = f"the radius is {formatted(radius[row], 10)} mm"
+            yield "lift", row, state, f"above 0, at most {formatted(LONGEST)} mm"
+        steps = np.diff(theta)
+        for row in np.flatnonzero(steps > _APART + TYPED).tolist():
+            state = f"the radius before is {degrees(float(steps[row]))} away"
+            yield "lift", row + 1, state, f"radii at most {degrees(_APART)} apart"
+        if self.smoothing_tolerance is not None:
+            rule = "radius_tolerance_mm"
+            yield "smoothing_tolerance", None, "is of lifts, but the rows are radii", rule
+        extent, tolerance = float(np.ptp(radius)), self.radius_tolerance or 0.0
+        if extent <= TYPED * float(radius.max()):
+            yield "lift", None, "the follower never moves", "at least two different radii"
+        if tolerance >= 0.5 * extent:
+            rule = f"below {formatted(0.5 * extent, 10)} mm, half of the difference of the radii"
+            yield "radius_tolerance", None, "leaves no lift", rule
+        yield from _open_end(
+            theta, radius, tolerance, "radius", lambda one: f"{formatted(one, 10)} mm"
+        )
+
     def _lift_problems(self, theta: Array, lift: Array, oscillating: bool) -> Iterator[Breach]:
-        scale, unit = (_DEG, "deg") if oscillating else (1.0, "mm")
+        scale, unit = self._unit(oscillating)
 
         def text(value: float) -> str:
             return f"{formatted(value / scale, 10)} {unit}"
@@ -180,10 +243,10 @@ class MotionTable(FromFile):
         if tolerance >= 0.5 * extent:
             rule = f"below {text(0.5 * extent)}, half of the total lift"
             yield "smoothing_tolerance", None, "leaves no lift", rule
-        jump = float(lift[-1] - lift[0])
-        if spans(theta, TURN) and abs(jump) > max(tolerance, TYPED * extent):
-            state = f"the lift after the turn is {text(lift[-1])}: it jumps by {text(abs(jump))}"
-            yield "lift", len(lift) - 1, state, f"that of the first row, {text(lift[0])}"
+        if self.radius_tolerance is not None:
+            rule = f"smoothing_tolerance_{unit}"
+            yield "radius_tolerance", None, "is of radii, but the rows are lifts", rule
+        yield from _open_end(theta, lift, tolerance, "lift", text)
 
     def program(self, tolerances: Tolerances, *, oscillating: bool = False) -> Program:  # noqa: ARG002  (a spline is in closed form)
         """Return the program of the rows.
@@ -199,7 +262,7 @@ class MotionTable(FromFile):
         -------
         Program
             Knots are the ends of the turn and the rows; of a smoothed lift only as many rows as
-            needed.
+            needed. Of radii the radius over the polar angle.
 
         Raises
         ------
@@ -213,26 +276,25 @@ class MotionTable(FromFile):
             apart[0] = 0.5 * abs(float(lift[-1] - lift[0]))
             lift[0] = 0.5 * (lift[0] + lift[-1])
         theta, lift, apart = rows_of_turn(theta, lift, apart)
-        return _program_of_rows(theta, lift, apart, self.smoothing_tolerance or 0.0)
+        tolerance = self.radius_tolerance if self.of_radii else self.smoothing_tolerance
+        return program_of_rows(theta, lift, apart, tolerance or 0.0)
 
     def given(self, *, oscillating: bool) -> Given:
         """Return the rows (see `FromFile.given`)."""
         theta, lift, lines = self._rows(oscillating)
         count = len(theta) - 1 if spans(theta, TURN) else len(theta)
+        scale, unit = self._unit(oscillating)
+        word = "radius" if self.of_radii else "lift"
         return Given(
-            key="lift",
-            called="lift",
+            key=word,
+            called=word,
             x=theta[:count],
-            y=lift[:count] / (_DEG if oscillating else 1.0),
+            y=lift[:count] / scale,
             lines=lines,
             place=lambda angle: f"at {degrees(angle)}",
             period=TURN,
-            unit="deg" if oscillating else "mm",
+            unit=unit,
         )
-
-
-def _columns(oscillating: bool) -> tuple[str, str]:
-    return "theta_deg", "lift_deg" if oscillating else "lift_mm"
 
 
 def rows_of_turn(theta: Array, *columns: Array) -> tuple[Array, ...]:
@@ -274,10 +336,27 @@ def _angle_problems(theta: Array) -> Iterator[Breach]:
         yield "theta", None, state, rule
 
 
-def _program_of_rows(theta: Array, lift: Array, apart: Array, tolerance: float) -> Program:
-    """Return the program of rows in a turn, to a tolerance, mm or rad; 0 for a curve through them.
+def _open_end(
+    theta: Array, values: Array, tolerance: float, word: str, text: Callable[[float], str]
+) -> Iterator[Breach]:
+    """Yield the fault of values that do not repeat after the turn."""
+    jump = abs(float(values[-1] - values[0]))
+    if spans(theta, TURN) and jump > max(tolerance, TYPED * float(np.ptp(values))):
+        state = f"the {word} after the turn is {text(values[-1])}: it jumps by {text(jump)}"
+        yield "lift", len(values) - 1, state, f"that of the first row, {text(values[0])}"
 
-    Rows that were given twice are `apart` from their mean, the lift, by so much.
+
+def program_of_rows(theta: Array, lift: Array, apart: Array, tolerance: float) -> Program:
+    """Return the program of rows in a turn.
+
+    Parameters
+    ----------
+    theta, lift : (n,) arrays
+        Angles from 0 to below a turn, rad, and lifts.
+    apart : (n,) array
+        By how much rows that were given twice are apart from their mean, the lift.
+    tolerance : float
+        Largest distance from a row; 0 for a curve through them.
     """
     values, cutoff, deviation, step = lift, 0.5 * len(theta), None, 1
     if tolerance:

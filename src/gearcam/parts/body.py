@@ -163,9 +163,9 @@ class Bevel(Layer):
     def on(self, layer: Layer) -> bool:
         """Return whether it is of the edge of a `layer`, in its face on this side."""
         level = self.high == layer.high if self.up else self.low == layer.low
-        one, other = self.edge, layer.edge
-        round_ones = isinstance(one, Circle) and isinstance(other, Circle)
-        alike = round_ones and (one.center, one.diameter) == (other.center, other.diameter)
+        one, other, alike = self.edge, layer.edge, False
+        if isinstance(one, Circle) and isinstance(other, Circle):
+            alike = (one.center, one.diameter) == (other.center, other.diameter)
         return level and not self.hollow and (one is other or alike)
 
     @property

@@ -26,6 +26,9 @@ from gearcam.spatial.guides import AcrossGuide, carried
 from gearcam.spatial.loaded import ContactLine
 from gearcam.spatial.walls import ROOT, RollerCam, RollerWall
 
+_CELLS: Final = 1440
+"""Cells of the cam angle in which an azimuth is looked for."""
+
 _WIDEST: Final = 4.0
 """Largest radius of a roller that is looked for, over the radius of the blank."""
 
@@ -237,6 +240,35 @@ class SpatialWall(RollerWall):
 
         low = np.full(len(theta), self.cam.floor)
         return bracketed_root(outside, low, np.full(len(theta), radius), ROOT * radius)
+
+    def heights_at(self, angles: Array) -> Array:
+        """Return the heights at which it meets the outside of the blank.
+
+        Parameters
+        ----------
+        angles : (n,) array, rad
+            Azimuths in the frame of a cam that turns counter-clockwise.
+
+        Returns
+        -------
+        (n,) array, mm
+            Of a wall that is not undercut, whose azimuth falls with the cam angle.
+        """
+        theta = np.linspace(0.0, self.cam.program.period, _CELLS + 1)
+
+        def meets(theta: Array) -> Array:
+            return self.contact(theta, self.edge(theta)[:, None]).points[:, 0]
+
+        x, y, _ = meets(theta).T
+        azimuth = np.unwrap(np.arctan2(y, x))
+        turned = azimuth[0] - (azimuth[0] - angles) % (2.0 * math.pi)
+        cell = np.clip(np.searchsorted(-azimuth, -turned), 1, _CELLS)
+
+        def beside(theta: Array) -> Array:
+            x, y, _ = meets(theta).T
+            return y * np.cos(turned) - x * np.sin(turned)
+
+        return meets(bracketed_root(beside, theta[cell - 1], theta[cell], ROOT))[:, 2]
 
     def contact_line(self, theta: Array) -> ContactLine:
         """Return where the roller presses, from its end to the edge (see `RollerWall`)."""

@@ -159,7 +159,8 @@ def test_the_names_of_files_are_those_written(name: str) -> None:
     if name == "yoke_cam":
         result = gearcam.build(result.design.with_({"output.tool_radius_mm": 5}))
     kind = KINDS[result.design.kind]
-    for word in set(kind.formats) - set(SLOW):
+    slides = name == "translating_cam"  # its wheel would not be above an axis
+    for word in set(kind.formats) - set(SLOW) - ({"grinding"} if slides else set()):
         told = reference.format_words(kind, word)[0].replace("the same names with .dxf", "")
         listed = set(re.findall(r"\w+\.\w+", told))
         listed |= {f"{one.removesuffix('.csv')}.dxf" for one in listed if "tool_path" in one}

@@ -29,7 +29,7 @@ from gearcam.designs.table import table_of
 from gearcam.designs.validate import placed_faults
 from gearcam.dynamics.follower_checks import MOVING
 from gearcam.kinds.cam.forms.base import FORMS, VARIANTS
-from gearcam.kinds.cam.motion import MOTION, circumstances
+from gearcam.kinds.cam.motion import MOTION, circumstances, measured_faults
 from gearcam.kinds.cam.polydyne import polydyne_faults
 from gearcam.kinds.cam.tables import (
     GOALS,
@@ -199,6 +199,7 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
             table = table_of("dynamics", FollowerDynamicsSpec)
             yield from placed_faults(breaches, table, document["dynamics"], ("dynamics",))
         yield from polydyne_faults(found, document)
+    yield from measured_faults(found, document, VARIANTS.meant(document))
     asked = unknowns(document)
     yield from _unsolvable(document, asked)
     if {"cam", "follower"} <= found.parts.keys():
@@ -287,10 +288,14 @@ def _tool_faults(output: Any, follower: Any) -> Iterator[Fault]:
     if not isinstance(output, Mapping) or not isinstance(follower, Mapping):
         return
     files, kind = output.get("files"), follower.get("type")
-    asked = isinstance(files, list) and "tool-path" in files
-    if asked and kind in ("flat", *POINTED) and "tool_radius_mm" not in output:
-        message = f"is missing: a {kind} follower has no radius that a cutter could have"
-        yield Fault(("output", "tool_radius_mm"), message, allowed="a radius above 0")
+    asked = files if isinstance(files, list) else []
+    for word, key, tool, without in (
+        ("tool-path", "tool_radius_mm", "cutter", ("flat", *POINTED)),
+        ("grinding", "grinding_wheel_radius_mm", "wheel", POINTED),
+    ):
+        if word in asked and kind in without and key not in output:
+            message = f"is missing: a {kind} follower has no radius that a {tool} could have"
+            yield Fault(("output", key), message, allowed="a radius above 0")
 
 
 _HERE: Final = "gearcam.kinds.cam"

@@ -18,7 +18,8 @@ from gearcam.base.findings import CHECKS, Finding, limit_of
 from gearcam.base.numerals import DIGITS, formatted, shortened
 from gearcam.cams.checks import KIND, driven
 from gearcam.designs.design import document_of, value_at
-from gearcam.kinds.cam.motion import by_rows
+from gearcam.kinds.cam.forms.base import lift_program
+from gearcam.kinds.cam.motion import by_rows, of_radii
 from gearcam.kinds.cam.tables import CAM_FORMATS
 from gearcam.kinds.sizes import LARGER, SizeAdvice
 from gearcam.laws.motion_table import MotionTable
@@ -66,14 +67,17 @@ def hinted(result: MadeCam, findings: tuple[Finding, ...]) -> tuple[Finding, ...
     """
     sentence = cache(partial(_sentence, result))  # several findings may be about one motion
     rounder = cache(partial(_rounder, result))
-    hints: Mapping[str, Callable[[Finding], Iterable[str]]] = {
-        "coarse-rows": lambda finding: _smoother(result, finding),
+    hints: dict[str, Callable[[Finding], Iterable[str]]] = {
+        "coarse-rows": lambda finding: _smoother(result, finding)
+    }
+    sizes: dict[str, Callable[[Finding], Iterable[str]]] = {
         **dict.fromkeys(("sharp-profile", "undercut"), lambda _: rounder()),
         **dict.fromkeys(
             ("pressure-angle", "jamming"),
             lambda finding: [sentence(finding.code, _motion_of(result, finding))],
         ),
     }
+    hints |= {} if of_radii(result.design.motion) else sizes
     return tuple(
         replace(one, message=" ".join([one.message, *hints[one.code](one)]))
         if one.code in hints
@@ -289,16 +293,18 @@ def _smoother(result: MadeCam, finding: Finding) -> Iterator[str]:
     """Yield values with which the rows of a motion table are not coarser than the profile."""
     table, lead, error = result.design.motion, result.cam.motions[0], finding.value or 0.0
     if isinstance(table, MotionTable) and lead.program.fall < _SCATTERED:
-        oscillating, lever = lead.follower.angular, lead.follower.lever
-        entries = by_rows().table.bound([result.solved.follower.motion]).entries.values()
-        entry = next(one for one in entries if one.name == "smoothing_tolerance")
-        given = 2.0 * (table.smoothing_tolerance or 0.0)
-        asked = (entry.outward(max(share * error / lever, given)) for share in _SHARES)
+        lever, design = lead.follower.lever, result.solved
+        name = "radius_tolerance" if table.of_radii else "smoothing_tolerance"
+        entries = by_rows().table.bound([design.follower.motion]).entries.values()
+        entry = next(one for one in entries if one.name == name)
+        given, unit = 2.0 * (getattr(table, name) or 0.0), 1.0 if table.of_radii else lever
+        asked = (entry.outward(max(share * error / unit, given)) for share in _SHARES)
         sizes = {shortened(size, 1.0, 2) for size in asked}
         for size in sorted(sizes):
-            smoother = replace(table, smoothing_tolerance=entry.inward(size))
+            smoother = replace(table, **{name: entry.inward(size)})
             try:  # what is left of the error is computed, not assumed
-                program = smoother.program(result.tolerances, oscillating=oscillating)
+                changed = replace(design, motion=smoother, examined=True)
+                program = lift_program(changed, result.tolerances)
             except InfeasibleError:  # a tolerance as large as the lift
                 break
             if program.errors[0] * lever <= lead.tolerance:
@@ -318,6 +324,7 @@ _ALSO: Final[Mapping[str, Callable[[Any], object]]] = {
     "dxf": kerf_paths,
     "cut-svg": kerf_paths,
     "curvature": lambda result: result.files("curvature"),
+    "grinding": lambda result: result.files("grinding"),
 }
 """Checks of single file formats, which may refuse a file although the profiles can be drawn."""
 

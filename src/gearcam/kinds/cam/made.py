@@ -132,7 +132,7 @@ class MadeCam(LoadedCam, PartsResult):
     @property
     def ordered(self) -> bool:
         """Whether the design needs a part: a blank, or files of parts."""
-        plain = {"csv", "curvature", "inspection"}
+        plain = {"csv", "curvature", "inspection", "caliper", "grinding"}
         blank = self.design.blank
         described = any(getattr(blank, one.name) != one.default for one in fields(blank))
         return described or not set(self.design.output.files) <= plain

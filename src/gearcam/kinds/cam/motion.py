@@ -28,6 +28,7 @@ from gearcam.laws.phases_of_lift import (
 )
 
 if TYPE_CHECKING:
+    from gearcam.designs.kind import Examined
     from gearcam.kinds.cam.forms.base import Form
     from gearcam.laws.motion_formula import MotionFormula
     from gearcam.laws.motion_table import MotionTable
@@ -36,6 +37,9 @@ Motion: TypeAlias = "Sequence[Phase] | MotionTable | MotionFormula"
 """The motion of a cam: its phases, or that of the whole turn."""
 
 TITLE: Final = "motion"
+
+_MEASURED: Final = ("disc", "conjugate")
+"""Forms of cams whose first profile may have been measured."""
 
 _UNREADABLE: Final = RisePhase(angle=1.0, law=None)
 """Replaces a phase that cannot be read; as its lift is missing, sums are not checked."""
@@ -178,3 +182,42 @@ MOTION: Final = Either(
     others="# Instead of phases, the whole turn as rows of angle and lift, or as a formula:",
 )
 """The motion of a cam."""
+
+
+def of_radii(motion: Any) -> bool:
+    """Return whether a motion is a measured profile: rows of radii."""
+    return bool(getattr(motion, "of_radii", False))
+
+
+def measured_faults(found: Examined, document: Mapping[str, Any], form: str) -> Iterator[Fault]:
+    """Yield what a measured profile does not go with.
+
+    Parameters
+    ----------
+    found : Examined
+        The valid tables.
+    document : mapping
+        All tables as in the file.
+    form : str
+        The form of the cam.
+    """
+    motion = found.parts.get(TITLE)
+    if not of_radii(motion):
+        return
+    drive = document.get("drive")
+    asked = [
+        (title, key)
+        for title in ("cam", "follower")
+        if isinstance(table := document.get(title), Mapping)
+        for key, value in table.items()
+        if value == "solve"
+    ]
+    if form not in _MEASURED:
+        allowed = f"""kind = "cam" with cam.form = {" or ".join(f'"{one}"' for one in _MEASURED)}"""
+        message = f"gives the radii of a profile, which a {form} cam does not have"
+        yield Fault((TITLE, "file"), message, getattr(motion, "file", None), allowed)
+    for where in asked:
+        yield Fault(where, "the measured profile gives it", "solve", "a length")
+    if isinstance(drive, Mapping) and drive.get("polydyne") is True:
+        message = "would change the measured profile"
+        yield Fault(("drive", "polydyne"), message, True, "leave it out")

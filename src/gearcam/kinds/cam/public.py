@@ -12,6 +12,7 @@ from gearcam.kinds.cam.forms.yoke import YokeFollower, YokeSpec
 from gearcam.kinds.cam.motion import MOTION as MOTION
 from gearcam.kinds.cam.motion import Motion as Motion
 from gearcam.kinds.cam.motion import circumstances as circumstances
+from gearcam.kinds.cam.motion import measured_faults as measured_faults
 from gearcam.kinds.cam.result import CamResult
 from gearcam.kinds.cam.tables import (
     BoundsSpec,

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.facts import Fact, Facts, Tree, extent
 from gearcam.base.numerals import FEW, formatted
 from gearcam.designs.outputs import MESHES
+from gearcam.kinds.cam.motion import of_radii
 from gearcam.kinds.cam.wall_facts import pressure
 from gearcam.kinds.shared import peak_of
 from gearcam.parts.mass import part_facts
@@ -49,6 +50,7 @@ def _motion(result: CamResult) -> Tree:
         "total_lift": result.cam.motions[0].total_lift,
         "continuity": Fact(program.continuity, "continuity of the motion", unit=""),
         "deviation": _deviation(program, scale, unit),
+        "measured": _measured(result),
         **{
             key: Fact(
                 scale * peak,
@@ -87,6 +89,16 @@ def _timed(result: CamResult) -> Tree:
         place = f"at {drive.named}"
         tree[key + column.removeprefix(name)] = Fact(peak, meaning, place=place, shown=True)
     return tree
+
+
+def _measured(result: CamResult) -> Tree | None:
+    """Return the distance of the profile from the radii of a motion that was measured."""
+    if not of_radii(result.design.motion):
+        return None
+    from gearcam.kinds.cam.measured import measured_facts
+
+    motion: Any = result.design.motion
+    return measured_facts(motion.given(oscillating=False), result.cam.walls[0])
 
 
 def _deviation(program: Program, scale: float, unit: str) -> Fact | None:
@@ -238,6 +250,37 @@ def _curvature(result: CamResult, measured: Measured) -> Files:
     return {"curvature.csv": table_bytes(columns)}
 
 
+def _caliper(result: CamResult, _: Measured) -> Files:
+    """Return the radius for each angle, for calipers or a dial gauge over a dividing head.
+
+    Files: caliper.csv.
+
+    Radius of the finished profile (of both walls of a groove, of both conjugate cams) from the axis
+    at equal steps of the polar angle in the frame of the part, counter-clockwise from its x axis as
+    in the DXF; of a translating cam heights above its lower edge at equal steps of x.
+    """
+    from gearcam.export.table import table_bytes
+    from gearcam.kinds.cam.calipers import caliper_table
+
+    return {"caliper.csv": table_bytes(caliper_table(result))}
+
+
+def _grinding(result: CamResult, _: Measured) -> Files:
+    """Return the lift of a grinding wheel.
+
+    Files: grinding.csv; of a groove grinding_inner.csv, grinding_outer.csv; of conjugate cams
+    grinding_1.csv, grinding_2.csv.
+
+    Lift of a wheel of `grinding_wheel_radius_mm` that rolls on the finished profile, straight above
+    the axis, over the cam angle; and its distance from the axis.
+    """
+    from gearcam.export.table import table_bytes
+    from gearcam.kinds.cam.calipers import grinding_tables
+
+    tables = grinding_tables(result)
+    return {f"grinding{ending}.csv": table_bytes(one) for ending, one in tables.items()}
+
+
 _SOLIDS: Final = """
     Files: cam.{format}; of conjugate cams cam1.{format}, cam2.{format}, cams.{format}.
 
@@ -281,5 +324,7 @@ FILES: Final[Mapping[str, Callable[..., Files]]] = {
     "report": report_files,
     "tool-path": _tool_path,
     "curvature": _curvature,
+    "caliper": _caliper,
+    "grinding": _grinding,
 }
 """What makes the files of each format: contents by name; what is measured on them is recorded."""

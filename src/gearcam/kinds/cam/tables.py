@@ -37,7 +37,7 @@ NAME: Final = "cam"
 
 _HERE: Final = "gearcam.kinds.cam"
 
-CAM_FORMATS: Final = (*FORMATS, "tool-path", "curvature")
+CAM_FORMATS: Final = (*FORMATS, "tool-path", "curvature", "caliper", "grinding")
 """What ``output.files`` of a cam may list."""
 
 
@@ -109,6 +109,8 @@ def _tolerance(quantity: Quantity = LENGTH, *, doc: str) -> Any:
 
 
 Hertz = Literal["hertz"]
+
+Flat = Literal["flat"]
 
 _DAMPED: Final = 0.06
 """Damping ratio of springs of metal with joints: 0.03 to 0.1, as a rule."""
@@ -322,6 +324,18 @@ class CamOutputSpec(OutputSpec):
     tool_radius: float | None = positive_length(
         example=8,
         doc="radius of the cutter of the tool path; the follower's, or half a groove, if left out",
+    )
+    caliper_step: float = param(
+        ANGLE, default=math.radians(1), ge=0.01, le=90, doc="step of the polar angle in caliper.csv"
+    )
+    grinding_wheel_radius: float | Flat | None = param(
+        LENGTH,
+        default=None,
+        gt=0,
+        le=LONGEST,
+        example=50,
+        doc="radius of the grinding wheel of grinding.csv; flat: of a flat one; the follower's, or "
+        "half a groove, if left out",
     )
 
 

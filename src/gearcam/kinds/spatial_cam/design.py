@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.brought import group_of
 from gearcam.base.display import ShortRepr
-from gearcam.base.quantities import COUNT, LENGTH, param
+from gearcam.base.quantities import ANGLE, COUNT, LENGTH, param
 from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.designs.design import Design
 from gearcam.designs.faults import Fault
 from gearcam.designs.outputs import MESHES, files_param, studies_param
-from gearcam.kinds.cam.public import MOTION, circumstances
+from gearcam.kinds.cam.public import MOTION, circumstances, measured_faults
 from gearcam.kinds.follower_tables import load_faults
 from gearcam.kinds.shared import (
     AccuracySpec,
@@ -43,7 +44,7 @@ NAME: Final = "spatial-cam"
 _HERE: Final = "gearcam.kinds.spatial_cam"
 
 SPATIAL_FORMATS: Final = (
-    "dxf", "svg", *MESHES, "step", "csv", "report", "tool-path", "gcode",
+    "dxf", "svg", *MESHES, "step", "csv", "report", "tool-path", "gcode", "caliper",
 )  # fmt: skip
 """What ``output.files`` may list."""
 
@@ -61,6 +62,9 @@ class SpatialOutput(GriddedOutput):
 
     files: tuple[str, ...] = files_param(SPATIAL_FORMATS, NAME)
     studies: tuple[str, ...] = studies_param(NAME)
+    caliper_step: float = param(
+        ANGLE, default=math.radians(1), ge=0.01, le=90, doc="step of the azimuth in caliper.csv"
+    )
     path_tolerance: float = param(
         LENGTH,
         default=0.005,
@@ -166,6 +170,7 @@ class SpatialCamDesign(Design):
 
 def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     """Yield contradictions between the tables of a `document` of which parts are `found`."""
+    yield from measured_faults(found, document, "cylinder")
     if "follower" in found.parts:
         yield from load_faults(found, document, oscillating=found.parts["follower"].oscillating)
     if "cam" in found.parts and found.parts["cam"].walls == "upper" and document.get("spring"):

@@ -19,6 +19,7 @@ from gearcam.kinds.gridded_shown import (
     table_files,
     wall_columns,
 )
+from gearcam.kinds.shared import steps_of_turn
 from gearcam.kinds.spatial_cam.milled import MILLED
 from gearcam.report.file import report_files
 from gearcam.spatial import checks
@@ -185,6 +186,25 @@ def _tables(result: SpatialCamResult, _: Any) -> Files:
     return table_files(wall_columns(parts, result.cam.hand), motion)
 
 
+def _caliper(result: SpatialCamResult, _: Any) -> Files:
+    """Return the heights of the walls on the outside of the cam.
+
+    Files: caliper.csv.
+
+    Heights above its lower end at which each wall meets the outside, at equal steps of the azimuth,
+    counter-clockwise from the x axis of its frame.
+    """
+    from gearcam.export.table import table_bytes
+
+    result.demand_whole()
+    angles = steps_of_turn(result.design.output.caliper_step)
+    heights = {
+        f"height_{wall.key}_mm": np.round(wall.heights_at(result.cam.hand * angles), 9)
+        for wall in result.cam.walls
+    }
+    return {"caliper.csv": table_bytes({"angle_deg": np.degrees(angles), **heights})}
+
+
 def _step(result: SpatialCamResult, _: Any) -> Files:
     """Return the solid for CAD.
 
@@ -236,5 +256,6 @@ FILES: Final[Mapping[str, Callable[..., Files]]] = {
     "step": _step,
     "report": report_files,
     **MILLED,
+    "caliper": _caliper,
 }
 """What makes the files of each format: contents by name."""

@@ -65,7 +65,8 @@ F = TypeVar("F", bound=FollowerSpec)
 def lift_program(design: Any, tolerances: Tolerances) -> Program:
     """Return the lift of a `design` over a turn, which does not depend on sizes.
 
-    That of a polydyne cam is corrected for its elastic follower.
+    That of a polydyne cam is corrected for its elastic follower; that on a measured profile depends
+    on the follower.
 
     Parameters
     ----------
@@ -75,6 +76,10 @@ def lift_program(design: Any, tolerances: Tolerances) -> Program:
         Internal accuracy.
     """
     motion = design.motion
+    if getattr(motion, "of_radii", False):
+        from gearcam.kinds.cam.measured import measured_lift
+
+        return measured_lift(design, tolerances)
     make = partial(make_program, motion) if isinstance(motion, Sequence) else motion.program
     program = make(tolerances, oscillating=design.follower.oscillating)
     if not getattr(design.drive, "polydyne", False):

@@ -171,8 +171,12 @@ class PlateOutput(CamOutputSpec):
     ----------
     place : float, mm
         Travel in the assembly drawing.
-    pose, motion_step : float
+    height_step : float, mm
+        Step along the cam in ``caliper.csv``.
+    pose, motion_step, caliper_step : float
         It does not turn.
+    grinding_wheel_radius : None
+        Only cams that turn are ground below a wheel.
 
     Examples
     --------
@@ -183,6 +187,16 @@ class PlateOutput(CamOutputSpec):
 
     pose: float = fixed(0.0)
     motion_step: float = fixed(0.0)
+    caliper_step: float = fixed(0.0)
+    height_step: float = param(
+        LENGTH,
+        default=1.0,
+        gt=0,
+        le=LONGEST,
+        word="caliper_step",
+        doc="step along a translating cam in caliper.csv",
+    )
+    grinding_wheel_radius: None = fixed(None)
     travel_step: float = positive_length(
         default=1.0, doc="step of a translating cam's travel in motion.csv"
     )
