@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.cams.caliper import caliper, wheel
+from gearcam.cams.carriers import unit
 from gearcam.cams.disc import DiscCam, make_cam
 from gearcam.cams.follow import follow
 from gearcam.cams.followers import Stem
@@ -132,7 +133,7 @@ def test_a_hollow_that_the_follower_does_not_reach_is_refused_at_its_bottom() ->
 def test_the_tightest_hollow_is_that_of_three_points_of_the_curve() -> None:
     profile = measured(cam("roller", "3-4-5", 16.0), 2.0)
     phi = np.linspace(0.0, 2.0 * math.pi, 20_000, endpoint=False)
-    bent = three_point_curvature(profile.radius(phi)[0] * np.exp(1j * phi))
+    bent = three_point_curvature(profile.radius(phi)[0] * unit(phi))
     assert profile.hollow == pytest.approx(-1.0 / bent.min(), rel=5e-3)
     assert profile.hollow < 400.0
 
