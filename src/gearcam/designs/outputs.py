@@ -15,8 +15,11 @@ from gearcam.base.rules import distinct, excluded
 MESHES: Final = ("stl", "3mf", "glb")
 """Kinds of files of solids made of triangles; `gearcam.export.mesh` has their writers."""
 
+DRAWINGS: Final = ("drawing-dxf", "drawing-svg", "drawing-pdf")
+"""Kinds of files of workshop drawings."""
+
 FORMATS: Final = (
-    "dxf", "cut-svg", "svg", *MESHES, "step", "csv", "drawing-dxf", "drawing-svg", "inspection",
+    "dxf", "cut-svg", "svg", *MESHES, "step", "csv", *DRAWINGS, "print-pdf", "inspection",
     "report",
 )  # fmt: skip
 """Kinds of files that ``output.files`` may list."""

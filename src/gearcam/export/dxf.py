@@ -31,6 +31,7 @@ from gearcam.pictures.drawings import Circle, Cross, Drawing, Loop, Path, Shape,
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
+    from ezdxf.layouts.base import BaseLayout
     from ezdxf.layouts.layout import Modelspace
 
 
@@ -209,8 +210,15 @@ def add_shape(space: Modelspace, shape: Shape, attributes: dict[str, Any], style
                 space.add_line(*as_pairs(line).tolist(), dxfattribs=attributes)
 
 
+def add_chain(
+    space: BaseLayout, points: Plane, attributes: dict[str, Any], style: DxfStyle
+) -> None:
+    """Add an open chain of straight lines (see `add_shape`)."""
+    _polyline(space, points, 0.0, attributes, style, closed=False)
+
+
 def _polyline(
-    space: Modelspace,
+    space: BaseLayout,
     points: Plane,
     bulges: Array | float,
     attributes: dict[str, Any],

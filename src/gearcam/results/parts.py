@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 
+from gearcam.base.errors import InfeasibleError
 from gearcam.designs.outputs import MESHES
 from gearcam.results.kind import Files
 from gearcam.results.result import Result
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
     from gearcam.numeric.pose import Pose, SpacePose
     from gearcam.parts.body import Part
     from gearcam.pictures.drawings import Drawing
+    from gearcam.sheets.paper import Heading, Values
+    from gearcam.sheets.part import Turning
     from gearcam.sheets.sheet import Sheet
 
 Measured = dict[str, Any]
@@ -148,14 +151,41 @@ class PartsResult(Result):
     @cached_property
     def sheets(self) -> tuple[Sheet, ...]:
         """The workshop drawings."""
-        from gearcam.sheets import wheel_sheet
         from gearcam.sheets.paper import sheet_rows
+        from gearcam.sheets.part import part_sheet
 
-        facts, title = self.facts, self.design.name
+        facts, runout = self.facts, self.design.drawing.runout
+        if runout and not any(one.kind == "BORE" for part in self.parts for one in part.openings):
+            what = "run-out is about a bore, and no part has one"
+            raise InfeasibleError(what, where="drawing.runout_mm", nearest="blank.bore_diameter_mm")
         return tuple(
-            wheel_sheet(part, sheet_rows(facts, self.rows_of(number)), title)
+            part_sheet(
+                part,
+                sheet_rows(facts, self.rows_of(number)),
+                self.heading(number),
+                turning=self.turning(number),
+                values=self.values(number),
+            )
             for number, part in enumerate(self.parts)
         )
+
+    def turning(self, number: int) -> Turning | None:  # noqa: ARG002
+        """Return how the part of a `number` from 0 turns, if its drawing shows it."""
+        return None
+
+    def values(self, number: int) -> Values:  # noqa: ARG002
+        """Return the table of values on the drawing of the part of a `number` from 0."""
+        from gearcam.sheets.paper import NO_VALUES
+
+        return NO_VALUES
+
+    def heading(self, number: int | None) -> Heading:
+        """Return what the title block says of the part of a `number` from 0, or of all together."""
+        from gearcam.sheets.paper import Heading
+
+        design, count = self.design, len(self.parts)
+        kind = "assembly drawing" if number is None else "part drawing"
+        return Heading(title=design.name, notes=design.drawing, kind=kind, number=number, of=count)
 
     @cached_property
     def solids(self) -> dict[str, Trimesh]:
@@ -349,6 +379,25 @@ def _sheet_dxf(result: PartsResult, _: Measured) -> Files:
     return {f"{one.name}_drawing.dxf": sheet_dxf(one, result.dxf_style) for one in result.sheets}
 
 
+def _sheet_pdf(result: PartsResult, _: Measured) -> Files:
+    """Return the workshop drawings as PDF."""
+    from gearcam.export.sheet_pdf import sheet_pdf
+
+    name = result.design.name
+    return {f"{one.name}_drawing.pdf": sheet_pdf([one], name) for one in result.sheets}
+
+
+def _print_pdf(result: PartsResult, _: Measured) -> Files:
+    """Return the plates at full size, on pages to be glued together."""
+    from gearcam.export.sheet_pdf import sheet_pdf
+    from gearcam.sheets.tiles import WINDOW, tiles
+
+    name = result.design.name
+    return {
+        f"{one.name}_print.pdf": sheet_pdf(tiles(one, name), name, WINDOW) for one in result.plates
+    }
+
+
 _MAKERS: Final[Mapping[str, Callable[..., Files]]] = {
     "dxf": _dxf,
     "cut-svg": _cut_svg,
@@ -357,5 +406,7 @@ _MAKERS: Final[Mapping[str, Callable[..., Files]]] = {
     "step": _step,
     "drawing-dxf": _sheet_dxf,
     "drawing-svg": _sheet_svg,
+    "drawing-pdf": _sheet_pdf,
+    "print-pdf": _print_pdf,
 }
 """What makes each format of files of parts."""

@@ -1,10 +1,8 @@
 """Sheets: dimensioned workshop drawings.
 
-`sheet` defines the elements of a sheet, `paper` selects paper and scale and draws frame, table and
-title block, `board` places dimensions where there is space, `wheel`
-draws the sheet of a part. Exporters use sheets only.
+`spec` has the table ``[drawing]``, `sheet` defines the elements of a sheet, `dimensions` how
+dimensions are drawn, `paper` selects paper and scale and draws frame, tables and title block,
+`board` places dimensions where there is space, `sections` cuts parts, `symbols` draws tolerance
+frames, `part` draws the sheet of a part, `turned` that of a cam in space, `tiles` outlines at full
+size on several pages. Exporters use sheets only.
 """
-
-from gearcam.sheets.wheel import wheel_sheet
-
-__all__ = ["wheel_sheet"]

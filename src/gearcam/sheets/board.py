@@ -2,36 +2,32 @@
 
 Drawn lines occupy cells of a grid of half millimetres of paper, texts those of another. A text is
 placed where both grids are free; leaders never cross a text, and as few lines as possible. *Levels*
-are the distances of linear dimensions from the view, so that they do not overlap.
+are the distances of linear dimensions from the view, short ones nearest, so that they do not
+overlap.
 
 Depends on drawings and sheets.
 """
 
 from __future__ import annotations
 
+import cmath
 import math
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
 
 from gearcam.base.numerals import decimal
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane, as_pairs, lengths_along
-from gearcam.pictures.drawings import Feature, Path, Shape, chains
+from gearcam.pictures.drawings import Circle, Feature, Path, Shape, chains
+from gearcam.sheets.dimensions import SHELF, along, arrow_head, leader, linear
 from gearcam.sheets.sheet import (
-    ARROW_ROOM,
     CENTERLINE,
-    DIMENSION,
-    GAP,
-    HEIGHT,
-    TAIL,
     Box,
     Dimension,
-    LinearDimension,
-    RoundDimension,
+    Hatch,
     Text,
-    along,
-    as_drawn,
     text_box,
     text_width,
 )
@@ -39,21 +35,22 @@ from gearcam.sheets.sheet import (
 CELL: Final = 0.5
 """Cell size of the grids, mm of paper."""
 
-LEVEL: Final = 9.0
+LEVEL: Final = 8.0
 FIRST_LEVEL: Final = 11.0
 """Distance of dimension lines, and of the first from the view, mm of paper."""
 
 CLEAR: Final = 1.0
 """Clear margin around a text, mm of paper."""
 
-TIGHT: Final = 2.0
-"""Least difference between a circle's diameter and the text within, mm of paper."""
-
 OVERHANG: Final = 3.0
 """Extension of centre lines beyond their circle, mm of paper."""
 
 CROSSING: Final = 6.0
 """Penalty of a crossed line, as length of a leader, mm of paper."""
+
+STEEP: Final = 10.0
+"""Penalty of an upright leader, as its length: programs that draw dimensions anew turn texts along
+the leader, mm of paper."""
 
 MOST: Final = 20
 """Largest number of a leader's cells on lines: more means that it runs along one."""
@@ -64,13 +61,25 @@ _REACHES: Final = np.concatenate([np.arange(5.0, 30.0, 2.5), np.arange(30.0, 160
 AROUND: Final = np.radians(np.arange(7.5, 367.5, 7.5))
 """Directions to try for a leader that may have any."""
 
+SIGNS: Final = {"diameter": "Ø", "radius": "R"}
 
-def _resampled(points: Plane, step: float, closed: bool) -> Plane:
-    """Return points at most `step` apart along a chain, complex, mm."""
-    chain = np.append(points, points[:1]) if closed else points
-    ways = lengths_along(chain)
-    count = max(2, math.ceil(ways[-1] / step) + 1)
-    return np.interp(np.linspace(0.0, ways[-1], count), ways, chain)
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Measure:
+    """A linear dimension that gets a level: its points, complex, mm, and its text.
+
+    Without a text it is the number; an `aside` one follows from others and is in parentheses.
+    """
+
+    first: complex
+    second: complex
+    text: str = ""
+    aside: bool = False
+
+    def label(self, vertical: bool) -> str:
+        """Return its text along y if `vertical`, else along x."""
+        words = self.text or decimal(abs(along(self.second - self.first, vertical)))
+        return f"({words})" if self.aside else words
 
 
 @dataclass(eq=False, kw_only=True)
@@ -87,7 +96,7 @@ class Board:
         Its paper, such as ``A4``.
     corner : complex, mm of the part
         Lower left corner of the paper.
-    features, dimensions, texts, rows : list
+    features, hatches, fills, dimensions, texts, rows : list
         As in `Sheet`.
     """
 
@@ -96,6 +105,8 @@ class Board:
     paper: str = ""
     corner: complex = 0j
     features: list[Feature] = field(default_factory=list)
+    hatches: list[Hatch] = field(default_factory=list)
+    fills: list[Plane] = field(default_factory=list)
     dimensions: list[Dimension] = field(default_factory=list)
     texts: list[Text] = field(default_factory=list)
     rows: list[tuple[str, str]] = field(default_factory=list)
@@ -105,7 +116,6 @@ class Board:
         cells = math.ceil(size.real) + 1, math.ceil(size.imag) + 1
         self._lines = np.zeros(cells, dtype=bool)
         self._taken = np.zeros(cells, dtype=bool)
-        self._step = 0.8 * CELL * self.unit
 
     @property
     def unit(self) -> float:
@@ -115,89 +125,91 @@ class Board:
     def draw(self, layer: str, shape: Shape) -> None:
         """Draw a `shape` on a `layer`."""
         self.features.append(Feature(layer=layer, shape=shape))
-        for points, closed in chains(shape, 0.1 * self._step):
-            self._ink(points, closed)
+        for points, closed in chains(shape, 0.08 * CELL * self.unit):
+            self._ink(np.append(points, points[:1]) if closed else points)
 
-    def line(self, layer: str, start: complex, end: complex) -> None:
-        """Draw a straight line on a `layer` from `start` to `end`, mm of the part."""
-        self.draw(layer, Path(points=np.array([start, end], dtype=np.complex128), closed=False))
+    def line(self, layer: str, *points: complex, closed: bool = False) -> None:
+        """Draw straight lines on a `layer` from point to point, mm of the part."""
+        self.draw(layer, Path(points=np.array(points, dtype=np.complex128), closed=closed))
 
-    def centre(self, place: complex, radius: float, gap: tuple[float, float] | None = None) -> None:
-        """Draw centre lines over a circle.
+    def hatch(self, loops: Sequence[Plane]) -> None:
+        """Draw cut metal within closed `loops`, mm of the part; no text has space on it."""
+        if loops:
+            made = Hatch(loops=tuple(loops))
+            self.hatches.append(made)
+            for line in made.lines(2.0 * self.unit):
+                self._ink(line)
 
-        Parameters
-        ----------
-        place : complex, mm
-            Its centre.
-        radius : float, mm
-            Its radius.
-        gap : (float, float), mm of paper, optional
-            Range from the centre where the upright line is left out, for a text.
-        """
-        arm = radius + OVERHANG * self.unit
-        if gap is None:
-            self.line(CENTERLINE, place - arm, place + arm)
-            self.line(CENTERLINE, place - 1j * arm, place + 1j * arm)
-            return
-        low, high = (value * self.unit for value in gap)
-        self.line(CENTERLINE, place - 1j * arm, place + 1j * low)
-        if high < arm:
-            self.line(CENTERLINE, place + 1j * high, place + 1j * arm)
+    def arrow(self, tip: complex, way: complex, size: float = 1.0) -> None:
+        """Draw an arrow head at `tip`, mm, in the direction of the unit vector `way`."""
+        self.fills.append(arrow_head(tip, way, size * self.unit))
+
+    def centre(self, circle: Circle) -> None:
+        """Draw centre lines over a circle."""
+        arm, middle = 0.5 * circle.diameter + OVERHANG * self.unit, circle.center
+        self.line(CENTERLINE, middle - arm, middle + arm)
+        self.line(CENTERLINE, middle - 1j * arm, middle + 1j * arm)
 
     def write(self, text: Text) -> None:
         """Write a text at its place."""
         self.texts.append(text)
-        self._take(text)
+        self._take(*text_box(text, self.unit))
 
-    def linear(
-        self,
-        first: complex,
-        second: complex,
-        at: float,
-        *,
-        vertical: bool = False,
-        prefix: str = "",
+    def measure(
+        self, measures: Sequence[Measure], at: float, *, side: int = -1, vertical: bool = False
     ) -> None:
-        """Draw a linear dimension along x or y.
+        """Draw linear dimensions along x or y, each on a level, short ones nearest.
 
         Parameters
         ----------
-        first, second : complex, mm
-            The points.
+        measures : sequence of Measure
+            What to measure.
         at : float, mm
-            y of the dimension line, x of a vertical one.
+            y of the edge of the view, x if `vertical`.
+        side : {-1, 1}
+            Whether the levels are below or left of it, or above or right of it.
         vertical : bool
-            Whether it is measured along y.
-        prefix : str
-            Before the number.
+            Whether they are measured along y.
         """
-        low, high = sorted((along(first, vertical), along(second, vertical)))
-        wide = text_width(prefix + decimal(high - low)) * self.unit
-        middle = 0.5 * (low + high)
-        if wide + 2 * GAP * self.unit > high - low:
-            behind = TAIL if high - low < ARROW_ROOM * self.unit else GAP
-            middle = high + (behind + GAP) * self.unit + 0.5 * wide
-        above = (GAP + 0.5 * HEIGHT) * self.unit
-        place = complex(at - above, middle) if vertical else complex(middle, at + above)
-        line = complex(at, low) if vertical else complex(low, at)
-        self._measure(
-            LinearDimension(
-                first=first,
-                second=second,
-                line=line,
-                place=place,
+        ends = [along(p, vertical) for one in measures for p in (one.first, one.second)]
+        order = sorted(measures, key=lambda one: abs(along(one.second - one.first, vertical)))
+        for number, one in enumerate(order):
+            made = linear(
+                one.first,
+                one.second,
+                at + side * (FIRST_LEVEL + LEVEL * number) * self.unit,
+                one.label(vertical),
+                self.unit,
                 vertical=vertical,
-                prefix=prefix,
+                beyond=max(ends),
             )
-        )
+            self.add(made)
 
-    def round(self, dimension: RoundDimension, angles: Array | None = None) -> bool:
-        """Draw a diameter or radius where there is space.
+    def add(self, dimension: Dimension) -> None:
+        """Draw a dimension."""
+        self.dimensions.append(dimension)
+        for line in dimension.lines:
+            self._ink(line)
+        self._take(*text_box(dimension.text, self.unit))
+
+    def callout(
+        self,
+        circle: Circle,
+        words: str = "",
+        *,
+        kind: str = "diameter",
+        angles: Array | None = None,
+    ) -> bool:
+        """Draw a diameter, a radius, or a text with a leader, where there is space.
 
         Parameters
         ----------
-        dimension : RoundDimension
-            The dimension; its arrow and its knee are placed here.
+        circle : Circle
+            What the arrow points to.
+        words : str
+            The text; by default sign and number. With ``{}`` these are in its place.
+        kind : {"diameter", "radius", "label"}
+            What it is.
         angles : (n,) array, rad, optional
             Allowed directions of the arrow; any by default.
 
@@ -206,72 +218,59 @@ class Board:
         bool
             False if there is no space: nothing is drawn, and the table must contain it.
         """
-        placed: RoundDimension | None = dimension
-        if not (dimension.diameter and angles is None and self._fits_inside(dimension)):
-            reaches = _REACHES if dimension.diameter else np.concatenate([_REACHES, -_REACHES])
-            placed = self._search(dimension, AROUND if angles is None else angles, reaches)
-        if placed is not None:
-            self._measure(placed)
-        return placed is not None
+        label = label_of(circle, words, kind)
+        reaches = np.concatenate([_REACHES, -_REACHES]) if kind == "radius" else _REACHES
+        found = self.place(circle, complex(text_width(label), SHELF), angles, reaches)
+        if found:
+            radius = 0.5 * circle.diameter
+            self.add(leader(circle.center, radius, *found, label, kind, self.unit))
+        return found is not None
 
     def label(self, point: complex, text: str) -> bool:
-        """Write a text with a leader.
+        """Write a `text` with a leader to a `point`, mm; False if there is no space for it."""
+        return self.callout(Circle(center=point, diameter=0.02 * self.unit), text, kind="label")
+
+    def place(
+        self, circle: Circle, size: complex, angles: Array | None = None, reaches: Array = _REACHES
+    ) -> tuple[float, float] | None:
+        """Return where the leader to a circle bends below a box; None without space for it.
 
         Parameters
         ----------
-        point : complex, mm
-            Point of the leader's arrow.
-        text : str
-            The text.
+        circle : Circle
+            What the arrow points to.
+        size : complex, mm of paper
+            Width and height of the box, which lies on the leader's shelf.
+        angles : (n,) array, rad, optional
+            Allowed directions of the arrow; any by default.
+        reaches : (n,) array, mm of paper
+            Allowed lengths of the leader; negative ones lie within the circle.
 
         Returns
         -------
-        bool
-            False if there is no space: nothing is drawn.
+        (float, float) or None
+            Its direction, rad, and the distance of the bend from the centre, mm.
         """
-        wanted = RoundDimension(center=point, radius=0.1 * self.unit, words=text)
-        placed = self._search(wanted, AROUND, _REACHES)
-        if placed is None:
-            return False
-        drawn = as_drawn(placed, self.unit)
-        leader, shelf = drawn.lines
-        self.draw(DIMENSION, Path(points=np.append(leader, shelf[1:]), closed=False))
-        self.draw(DIMENSION, Path(points=drawn.heads[0][[1, 0, 2]], closed=False))
-        self.write(drawn.text)
-        return True
-
-    def _fits_inside(self, dimension: RoundDimension) -> bool:
-        """Return whether a diameter's text has space in the middle of its circle."""
-        if 2.0 * dimension.radius * self.scale - text_width(dimension.label) <= TIGHT:
-            return False
-        low, high = text_box(as_drawn(dimension, self.unit).text, self.unit)
-        return bool(self._empty(np.array([low]), np.array([high]))[0])
-
-    def _search(
-        self, dimension: RoundDimension, angles: Array, reaches: Array
-    ) -> RoundDimension | None:
-        """Return the dimension with the best knee; None if there is no space for its text."""
-        angle, reach = (axis.ravel() for axis in np.meshgrid(angles, reaches, indexing="ij"))
+        radius = 0.5 * circle.diameter
+        grid = np.meshgrid(AROUND if angles is None else angles, reaches, indexing="ij")
+        angle, reach = (axis.ravel() for axis in grid)
         spokes: Plane = np.exp(1j * angle)
-        knees = dimension.radius + reach * self.unit
-        at = np.asarray(dimension.center + knees * spokes, dtype=np.complex128)
+        knees = radius + reach * self.unit
+        at = np.asarray(circle.center + knees * spokes, dtype=np.complex128)
         left = reach * spokes.real <= 0.0
-        wide = text_width(dimension.label) * self.unit
-        low = at - wide * left
-        high = low + complex(wide, (HEIGHT + GAP) * self.unit)
-        good = self._empty(low, high) & (knees > 0.0)
+        low = at - size.real * self.unit * left
+        good = self._empty(low, low + size * self.unit) & (knees > 0.0)
         best, least = None, math.inf
         for index in np.argsort(np.abs(reach), kind="stable").tolist():
             if abs(reach[index]) >= least:
                 break
             if good[index]:
-                edge = dimension.center + dimension.radius * complex(spokes[index])
-                cost = abs(reach[index]) + CROSSING * self._crossed(edge, complex(at[index]))
+                edge = circle.center + radius * complex(spokes[index])
+                cost = abs(reach[index]) + STEEP * abs(float(spokes[index].imag))
+                cost += CROSSING * self._crossed(edge, complex(at[index]))
                 if cost < least:
                     best, least = index, cost
-        if best is None:
-            return None
-        return replace(dimension, angle=float(angle[best]), knee=float(knees[best]))
+        return None if best is None else (float(angle[best]), float(knees[best]))
 
     def _crossed(self, start: complex, end: complex) -> float:
         """Return the number of lines a leader crosses; infinite along one, or through a text."""
@@ -279,8 +278,8 @@ class Board:
         length = abs(way)
         skip = min(1.0, 2.0 * CELL * self.unit / length)
         count = max(2, math.ceil(length * self.scale / CELL))
-        leader = np.linspace(skip, 1.0, count) * way
-        cells, inside = self._cells(np.asarray(start + leader, dtype=np.complex128))
+        on_way = np.linspace(skip, 1.0, count) * way
+        cells, inside = self._cells(np.asarray(start + on_way, dtype=np.complex128))
         if not inside.all() or self._taken[cells[:, 0], cells[:, 1]].any():
             return math.inf
         hits = int(self._lines[cells[:, 0], cells[:, 1]].sum())
@@ -305,20 +304,28 @@ class Board:
         held = sums[k, m] - sums[i, m] - sums[k, j] + sums[i, j]
         return inside & also & (held == 0)
 
-    def _ink(self, points: Plane, closed: bool) -> None:
-        cells, inside = self._cells(_resampled(points, self._step, closed))
+    def _ink(self, chain: Plane) -> None:
+        ways = lengths_along(chain)
+        count = max(2, math.ceil(ways[-1] * self.scale / (0.8 * CELL)) + 1)
+        points = np.interp(np.linspace(0.0, ways[-1], count), ways, chain)
+        cells, inside = self._cells(points)
         self._lines[cells[inside, 0], cells[inside, 1]] = True
 
-    def _take(self, text: Text) -> None:
-        low, high = text_box(text, self.unit)
+    def _take(self, low: complex, high: complex) -> None:
         edge = CLEAR * self.unit * (1.0 + 1j)
         corners, _ = self._cells(np.array([low - edge, high + edge]))
         (i, j), (k, m) = np.clip(corners, 0, None)
         self._taken[i : k + 1, j : m + 1] = True
 
-    def _measure(self, dimension: Dimension) -> None:
-        self.dimensions.append(dimension)
-        drawn = as_drawn(dimension, self.unit)
-        for line in drawn.lines:
-            self._ink(line, closed=False)
-        self._take(drawn.text)
+
+def label_of(circle: Circle, words: str = "", kind: str = "diameter") -> str:
+    """Return the text of a diameter or radius (see `Board.callout`)."""
+    if kind == "label":
+        return words
+    value = circle.diameter if kind == "diameter" else 0.5 * circle.diameter
+    return (words or "{}").replace("{}", f"{SIGNS[kind]}{decimal(value)}")
+
+
+def direction(point: complex) -> Array:
+    """Return the direction of a `point` from the origin as the only one, rad."""
+    return np.array([cmath.phase(point)])

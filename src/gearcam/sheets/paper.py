@@ -1,28 +1,39 @@
-"""Paper: size and scale of a sheet, its frame, parameter table, title block and notes.
+"""Paper: size and scale of a sheet, its frame, tables, title block and notes.
 
 A4 or A3 landscape with a binding margin, scales of ISO 5455 (1, 2 and 5 times powers of ten). The
-table is on the right, the title block below it, notes beside that; the rest is the *area* of the
-views. The smaller paper is used if it shows the part at full size or larger, or at the same scale
-as the larger paper.
+tables are on the right, the title block of ISO 7200 below them, notes beside that; the rest is the
+*area* of the views. The smaller paper is used if it shows the part at full size or larger, or at
+the same scale as the larger paper; A2 only where the tables need it.
 
 Depends on drawings, facts and sheets.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Final
-
-import numpy as np
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.facts import Facts, NamedFact
 from gearcam.base.numerals import formatted
-from gearcam.pictures.drawings import Path
+from gearcam.parts.shapes import Circle
 from gearcam.sheets.board import Board
-from gearcam.sheets.sheet import FRAME, GLYPH, HEIGHT, Box, Sheet, Text
+from gearcam.sheets.sheet import (
+    DIMENSION,
+    FRAME,
+    HEIGHT,
+    RULE,
+    SERIES,
+    Box,
+    Sheet,
+    Text,
+    text_width,
+)
+from gearcam.sheets.spec import DrawingNotes
 
-PAPERS: Final = {"A4": (297.0, 210.0), "A3": (420.0, 297.0)}
+PAPERS: Final = {"A4": (297.0, 210.0), "A3": (420.0, 297.0), "A2": (594.0, 420.0)}
 """Width and height, mm."""
 
 BINDING: Final = 20.0
@@ -32,19 +43,18 @@ MARGIN: Final = 10.0
 TABLE: Final = 86.0
 LABELS: Final = 45.0
 ROW: Final = 5.0
-"""Width of the table and of its labels, and height of a row, mm."""
+LEAST_ROW: Final = 2.9
+"""Width of the tables and of labels, and usual and least height of a row, mm."""
 
-BLOCK: Final = (150.0, 24.0)
-"""Width and height of the title block, mm."""
+CELLS: Final = 8.0
+BLOCK: Final = (180.0, 4 * CELLS)
+"""Height of a cell of the title block, its width and height, mm."""
 
 PAD: Final = 3.0
 """Gap around the views, mm."""
 
 INSET: Final = 1.5
 """Distance of a cell's text from its edge, mm."""
-
-SMALL: Final = 1.6
-"""Height of the labels in the title block, mm."""
 
 SCALES: Final = tuple(base * 10.0**power for power in range(2, -7, -1) for base in (5.0, 2.0, 1.0))[
     2:
@@ -54,8 +64,56 @@ SCALES: Final = tuple(base * 10.0**power for power in range(2, -7, -1) for base 
 _FEW: Final = 4
 """Digits of numbers in rows with several numbers."""
 
-PROJECTION: Final = "first angle"
-"""The view from the left is placed on the right."""
+ACROSS: Final = 3
+"""Pairs of columns of a table of values."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Heading:
+    """What the title block says.
+
+    Parameters
+    ----------
+    title : str
+        Title.
+    notes : DrawingNotes
+        Of the design.
+    kind : str
+        Type of the document.
+    number : int or None
+        Which of the parts, from 0; None for all together.
+    of : int
+        How many parts there are.
+    """
+
+    title: str
+    notes: DrawingNotes
+    kind: str = "part drawing"
+    number: int | None = 0
+    of: int = 1
+
+    @property
+    def part_number(self) -> str:
+        """The identification number; empty without one."""
+        found = self.notes.of("part_number", self.number)
+        same = self.number is not None and found == self.notes.of("part_number", None)
+        return f"{found}-{(self.number or 0) + 1}" if found and same and self.of > 1 else found
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Values:
+    """A table of values: the `title` of both columns, and rows of two texts."""
+
+    title: tuple[str, str]
+    rows: Sequence[tuple[str, str]]
+
+    @property
+    def tall(self) -> int:
+        """Its number of rows on paper, with the title and a gap."""
+        return math.ceil(len(self.rows) / ACROSS) + 2 if self.rows else 0
+
+
+NO_VALUES: Final = Values(title=("", ""), rows=())
 
 
 def scale_words(scale: float) -> str:
@@ -80,7 +138,7 @@ def choose(size: complex, room: complex, rows: int) -> tuple[str, float]:
     room : complex, mm of paper
         Space for dimensions and gaps besides the views, across and up.
     rows : int
-        Number of rows of the table.
+        Number of rows of the tables.
 
     Returns
     -------
@@ -90,9 +148,10 @@ def choose(size: complex, room: complex, rows: int) -> tuple[str, float]:
     Raises
     ------
     InfeasibleError
-        If the views are too large for the smallest scale.
+        If the views are too large for the smallest scale, or the tables for the largest paper.
     """
-    fitting = []
+    fitting: list[tuple[str, float]] = []
+    fits: list[float] = []
     for paper, (_, tall) in PAPERS.items():
         low, high = area_of(paper)
         free = high - low - room
@@ -101,11 +160,13 @@ def choose(size: complex, room: complex, rows: int) -> tuple[str, float]:
             for scale in SCALES
             if scale * size.real <= free.real and scale * size.imag <= free.imag
         ]
-        long = (rows + 1) * ROW > tall - 2 * MARGIN - BLOCK[1]
-        if fits and not (long and paper == "A4"):
+        row = ROW if paper == "A4" else LEAST_ROW
+        long = (rows + 1) * row > tall - 2 * MARGIN - BLOCK[1]
+        if fits and not long and not (paper == "A2" and fitting):
             fitting.append((paper, fits[0]))
     if not fitting:
         what = f"views of {formatted(size.real)} x {formatted(size.imag)} mm do not fit on a sheet"
+        what += f" with {rows} rows of data" if fits else ""
         note = f"the smallest scale is 1 : {formatted(1.0 / min(SCALES))}"
         raise InfeasibleError(what, where="output.files", nearest=note)
     return max(fitting, key=lambda one: min(one[1], 1.0))
@@ -141,7 +202,7 @@ def begin(size: complex, room: Box, low: complex, rows: int) -> Board:
     low : complex, mm
         Lower left corner of the views.
     rows : int
-        Number of rows of the table.
+        Number of rows of the tables.
 
     Returns
     -------
@@ -162,20 +223,30 @@ def begin(size: complex, room: Box, low: complex, rows: int) -> Board:
 
 
 def finish(
-    board: Board, *, name: str, title: str, facts: Mapping[str, str], notes: Sequence[str]
+    board: Board,
+    heading: Heading,
+    *,
+    name: str,
+    facts: Mapping[str, str],
+    notes: Sequence[str],
+    values: Values = NO_VALUES,
 ) -> Sheet:
-    """Return the finished sheet, with frame, table, title block and notes around the views.
+    """Return the finished sheet, with frame, tables, title block and notes around the views.
 
     Parameters
     ----------
     board : Board
         With its views.
-    name, title : str
-        Name and title of the sheet.
+    heading : Heading
+        What the title block says.
+    name : str
+        Name of the sheet.
     facts : mapping of str to str
-        First rows of the table; those of the board follow.
+        First rows of the table of data; those of the board follow.
     notes : sequence of str
         Notes beside the title block.
+    values : Values
+        A second table.
 
     Returns
     -------
@@ -184,76 +255,155 @@ def finish(
     size, rows = PAPERS[board.paper], (*facts.items(), *board.rows)
     left, right, top = BINDING, size[0] - MARGIN, size[1] - MARGIN
     frame = complex(left, MARGIN), complex(right, MARGIN), complex(right, top), complex(left, top)
-    _chain(board, frame, closed=True)
-    _table(board, rows, complex(right - TABLE, top))
-    _block(board, (name, title), complex(right - BLOCK[0], MARGIN))
-    high = MARGIN + BLOCK[1]
+    _chain(board, FRAME, *frame, closed=True)
+    free = top - MARGIN - BLOCK[1]
+    row = min(ROW, free / (len(rows) + values.tall or 1))
+    corner = complex(right - TABLE, top)
+    _table(board, rows, corner, row)
+    if values.rows:
+        _values(board, values, corner - 1j * row * (len(rows) + 1), row)
+    _block(board, heading, name, complex(right - BLOCK[0], MARGIN))
     wide = right - BLOCK[0] - left - 2 * INSET
-    height = min(HEIGHT, wide / (GLYPH * max(len(note) for note in notes)))
-    for number, note in enumerate(notes, start=1):
-        place = complex(left + INSET, high - 1.8 * HEIGHT * number)
-        _write(board, note, place, wide, height)
+    for height in (HEIGHT, SERIES[0]):
+        lines = [line for note in notes for line in _wrapped(note, wide, height)]
+        pitch = 1.6 * height
+        if (len(lines) + 0.5) * pitch <= BLOCK[1]:
+            break
+    for number, line in enumerate(lines, start=1):
+        place = complex(left + INSET, MARGIN + BLOCK[1] - pitch * number)
+        _write(board, line, place, wide, height)
     return Sheet(
         name=name,
-        title=title,
+        title=heading.title,
         paper=board.paper,
         size=size,
         scale=board.scale,
         corner=board.corner,
         features=tuple(board.features),
+        hatches=tuple(board.hatches),
+        fills=tuple(board.fills),
         dimensions=tuple(board.dimensions),
         texts=tuple(board.texts),
         rows=rows,
     )
 
 
-def _chain(board: Board, points: Sequence[complex], *, closed: bool = False) -> None:
-    """Draw lines of the frame, mm of paper."""
-    placed = np.array([board.corner + board.unit * point for point in points])
-    board.draw(FRAME, Path(points=placed, closed=closed))
+def _wrapped(note: str, wide: float, height: float) -> list[str]:
+    """Return a note as lines of a `height` that are not wider than `wide`, mm."""
+    lines = [""]
+    for word in note.split():
+        longer = f"{lines[-1]} {word}".strip()
+        lines = [*lines[:-1], longer] if text_width(longer, height) <= wide else [*lines, word]
+    return lines
+
+
+def _chain(board: Board, layer: str, *points: complex, closed: bool = False) -> None:
+    """Draw lines between points, mm of paper."""
+    board.line(layer, *(board.corner + board.unit * point for point in points), closed=closed)
+
+
+def _least(height: float) -> float:
+    """Return the largest height of the series that is not above `height`, or the least one."""
+    return max((one for one in SERIES if one <= height + 1e-9), default=SERIES[0])
 
 
 def _write(board: Board, text: str, place: complex, wide: float, height: float = HEIGHT) -> None:
-    """Write a line, smaller if it is longer than its space; line breaks become blanks."""
+    """Write a line, lower and then narrower if it is longer than its space, in blanks for breaks."""
     text = " ".join(text.split())
     if text:
-        height = min(height, wide / (GLYPH * len(text)))
+        height = _least(height * min(1.0, wide / text_width(text, height)))
+        squeeze = min(1.0, wide / text_width(text, height))
         at = board.corner + board.unit * place
-        board.write(Text(text=text, place=at, height=height))
+        board.write(Text(text=text, place=at, height=height, squeeze=squeeze))
 
 
-def _table(board: Board, rows: Sequence[tuple[str, str]], corner: complex) -> None:
-    """Draw the table downwards from its upper left corner; long tables have lower rows."""
+def _table(board: Board, rows: Sequence[tuple[str, str]], corner: complex, row: float) -> None:
+    """Draw the table of data downwards from its upper left corner."""
     if not rows:
         return
-    row = min(ROW, (corner.imag - MARGIN - BLOCK[1]) / len(rows))
     low = corner - 1j * row * len(rows)
-    _chain(board, [corner, low, low + TABLE])
-    _chain(board, [corner + LABELS, low + LABELS])
+    _chain(board, RULE, corner, low, low + TABLE)
+    _chain(board, RULE, corner + LABELS, low + LABELS)
     for number, (label, value) in enumerate(rows, start=1):
         base = corner - 1j * row * number
         if number < len(rows):
-            _chain(board, [base, base + TABLE])
-        height, place = min(HEIGHT, 0.5 * row), base + INSET + 0.27j * row
+            _chain(board, RULE, base, base + TABLE)
+        height, place = _least(0.55 * row), base + INSET + 0.27j * row
         _write(board, label, place, LABELS - 2 * INSET, height)
         _write(board, value, place + LABELS, TABLE - LABELS - 2 * INSET, height)
 
 
-def _block(board: Board, words: tuple[str, str], corner: complex) -> None:
-    """Draw the title block upwards from its lower left corner."""
-    row, (name, title) = BLOCK[1] / 3.0, words
-    cells = [
-        (0.0, 2, BLOCK[0], "title", title, 4.0),
-        (0.0, 1, 100.0, "drawing", name, 3.0),
-        (100.0, 1, 50.0, "scale", scale_words(board.scale), 3.0),
-        (0.0, 0, 50.0, "units", "mm, deg", 3.0),
-        (50.0, 0, 50.0, "projection", PROJECTION, 3.0),
-        (100.0, 0, 50.0, "paper", board.paper, 3.0),
+def _values(board: Board, values: Values, corner: complex, row: float) -> None:
+    """Draw a table of values downwards from its upper left corner, by columns."""
+    tall, wide = values.tall - 2, TABLE / (2 * ACROSS)
+    _chain(board, RULE, corner + TABLE, corner, corner - 1j * row * (tall + 1))
+    for part in range(ACROSS):
+        shown = [values.title, *values.rows[part * tall : (part + 1) * tall]]
+        for number, texts in enumerate(shown if len(shown) > 1 else (), start=1):
+            for place, text in enumerate(texts):
+                at = corner + (2 * part + place) * wide - 1j * row * number
+                _write(board, text, at + 0.8 + 0.27j * row, wide - 1.6, _least(0.5 * row))
+                _chain(board, RULE, at, at + wide, at + wide + 1j * row)
+
+
+def _block(board: Board, heading: Heading, name: str, corner: complex) -> None:
+    """Draw the title block of ISO 7200 upwards from its lower left corner."""
+    notes, number = heading.notes, heading.number
+    rows = [
+        [
+            ("part number", heading.part_number or name, 62.0),
+            ("revision", notes.revision, 18.0),
+            ("date of issue", notes.date, 30.0),
+            ("approved by", notes.approved_by, 40.0),
+            ("language", "en", 14.0),
+            ("sheet", "1/1", 16.0),
+        ],
+        [
+            ("title", heading.title, 80.0),
+            ("created by", notes.author, 40.0),
+            ("legal owner", notes.owner, 60.0),
+        ],
+        [
+            ("scale", scale_words(board.scale), 18.0),
+            ("projection", "", 24.0),
+            ("units", "mm, deg", 20.0),
+            ("paper", board.paper, 18.0),
+            ("general tolerances", notes.general_tolerances, 40.0),
+            ("document type", heading.kind, 60.0),
+        ],
+        [
+            ("material", notes.of("material", number), 80.0),
+            ("heat treatment", notes.of("heat_treatment", number), 64.0),
+            ("surface texture", "", 36.0),
+        ],
     ]
-    for across, up, wide, label, value, height in cells:
-        low = corner + across + 1j * row * up
-        top = low + 1j * row
-        _chain(board, [low, top, top + wide])
-        _write(board, label, top + INSET - 1j * (SMALL + 0.8), wide - 2 * INSET, SMALL)
-        indent = 15.0
-        _write(board, value, low + indent + 0.28j * row, wide - indent - INSET, height)
+    for up, cells in enumerate(rows):
+        low = corner + 1j * CELLS * up
+        for label, value, wide in cells:
+            top = low + 1j * CELLS
+            _chain(board, RULE, low, top, top + wide)
+            _write(board, label, top + INSET - 2.5j, wide - 2 * INSET, SERIES[0])
+            tall = 3.5 if label in ("title", "part number") else HEIGHT
+            _write(board, value or "", low + INSET + 1.2j, wide - 2 * INSET, tall)
+            if label == "projection":
+                _first_angle(board, low + 4.0 + 2.6j)
+            if label == "surface texture" and notes.surface:
+                _surface(board, low + 20.0 + 0.6j, notes.surface)
+            low += wide
+
+
+def _first_angle(board: Board, low: complex) -> None:
+    """Draw the symbol of the first angle projection (ISO 5456-2) about the left of its axis."""
+    sizes = (-0.75, 0.75, 1.5, -1.5)
+    cone = (low + complex(5.0 * (abs(y) > 1.0), y) for y in sizes)
+    _chain(board, DIMENSION, *cone, closed=True)
+    for diameter in (1.5, 3.0):
+        center = board.corner + board.unit * (low + 11.0)
+        board.draw(DIMENSION, Circle(center=center, diameter=diameter * board.unit))
+
+
+def _surface(board: Board, low: complex, texture: str) -> None:
+    """Draw the symbol of a surface texture (ISO 21920-1) from its lowest point."""
+    bend, high = low, low + 2.9 + 5.0j
+    _chain(board, DIMENSION, bend - 1.45 + 2.5j, bend, high, high + 1.0 + text_width(texture))
+    _write(board, texture, low + 3.4 + 5.0j - 1j * (HEIGHT + 0.7), 30.0)

@@ -1,18 +1,19 @@
-"""Elements of a sheet: features, dimensions and texts, in true millimetres of the part.
+"""Elements of a sheet: features, hatches, dimensions and texts, in true millimetres of the part.
 
 A *sheet* has a *paper* and a *scale*, millimetres of paper over millimetres of the part. All
 positions are complex, in the part's millimetres, with the front view in the part's own frame;
-heights of texts, gaps and arrow heads are in millimetres of paper. A *dimension* has a measured
-value; `as_drawn` converts it to lines, arrow heads and a text, for formats without dimensions.
-Text heights are those of capital letters.
+heights of texts, gaps and arrow heads are in millimetres of paper. A *dimension* has what it
+measures, and what is drawn of it: every format shows these lines and this text. Lines are those of
+ISO 128-20, texts have the heights of ISO 3098-1 and the widths of Helvetica.
 
 Depends on drawings.
 """
 
 from __future__ import annotations
 
-import cmath
 import math
+import unicodedata
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final, Literal
 
@@ -21,7 +22,8 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.base.numerals import decimal
 from gearcam.numeric.arrays import Plane
-from gearcam.pictures.drawings import OUTER_WALL, OUTLINE, THROUGH, Feature
+from gearcam.pictures import drawings
+from gearcam.pictures.drawings import Feature, chains
 
 Box = tuple[complex, complex]
 """Lower left and upper right corner."""
@@ -31,37 +33,61 @@ TEXT: Final = "TEXT"
 CENTERLINE: Final = "CENTERLINE"
 HIDDEN: Final = "HIDDEN"
 FRAME: Final = "FRAME"
+RULE: Final = "RULE"
 EDGE: Final = "EDGE"
-"""Layers besides those of drawings; EDGE has visible edges that are not cut."""
+CUT: Final = "CUT"
+HATCH: Final = "HATCH"
+"""Layers besides those of drawings: EDGE has visible edges that are not cut, CUT the ends of the
+line of a section, RULE the lines of tables."""
 
-HEAVY: Final = (OUTLINE, OUTER_WALL, *THROUGH, EDGE)
-"""Layers drawn with thick lines."""
+WIDE: Final = 0.5
+NARROW: Final = 0.25
+"""Widths of lines, mm of paper: line group 0.5."""
 
-THICK: Final = 0.5
-THIN: Final = 0.25
-"""Widths of lines, mm of paper."""
+HEAVY: Final = (
+    drawings.OUTLINE, drawings.PROFILE, drawings.BLANK, drawings.OUTER_WALL, *drawings.THROUGH,
+    drawings.MARK, EDGE, CUT, FRAME,
+)  # fmt: skip
+"""Layers drawn with wide lines."""
+
+PATTERNS: Final = {
+    "ACAD_ISO02W100": (12.0, 3.0),
+    "ACAD_ISO04W100": (24.0, 3.0, 0.5, 3.0),
+}
+"""Dashed and long-dashed dotted lines: dashes and gaps, in widths of the line."""
+
+_DASHED, _CHAIN = PATTERNS
+LINE_OF: Final = {
+    HIDDEN: _DASHED,
+    **dict.fromkeys((CENTERLINE, drawings.PITCH, drawings.PRIME, drawings.CENTRODE), _CHAIN),
+}
+"""Line types by layer type; all others are continuous."""
+
+SERIES: Final = (1.8, 2.5, 3.5, 5.0, 7.0, 10.0)
+"""Heights of texts, mm of paper."""
 
 HEIGHT: Final = 2.5
 """Height of the numbers, mm of paper."""
 
-GLYPH: Final = 0.9
-"""Largest width of a letter over the height of a capital."""
+CAPITAL: Final = 0.718
+"""Height of a capital over the size of the font."""
 
 GAP: Final = 0.8
 """Distance from a line to the text above it, mm of paper."""
 
-ARROW: Final = 3.0
-"""Length of an arrow head, mm of paper."""
+_WIDTHS: Final = [
+    278, 278, 355, 556, 556, 889, 667, 191, 333, 333, 389, 584, 278, 333, 278, 278, *10 * [556],
+    278, 278, 584, 584, 584, 556, 1015, 667, 667, 722, 722, 667, 611, 778, 722, 278, 500, 667, 556,
+    833, 722, 778, 667, 778, 722, 667, 611, 722, 667, 944, 667, 667, 611, 278, 278, 278, 469, 556,
+    333, 556, 556, 500, 556, 556, 278, 556, 556, 222, 222, 500, 222, 833, 556, 556, 556, 556, 333,
+    500, 278, 556, 500, 722, 500, 500, 500, 334, 260, 334, 584,
+]  # fmt: skip
+"""Widths of the characters from the blank on, thousandths of the size of Helvetica."""
 
-TAIL: Final = 5.0
-"""Length of the line behind an arrow that points inwards, mm of paper."""
+_OTHERS: Final = {"Ø": 778, "ø": 611, "°": 400, "±": 584}
 
-LEAST_GAP: Final = 1.0
-PAST: Final = 1.5
-"""Gap from the part to an extension line, and its overrun past the dimension line, mm of paper."""
-
-ARROW_ROOM: Final = 2 * ARROW + GAP
-"""Length of dimension lines, mm of paper, below which arrows are outside."""
+SAGITTA: Final = 0.005
+"""Chord error of arcs in formats without them, mm of paper."""
 
 
 def fine(value: float) -> str:
@@ -72,7 +98,11 @@ def fine(value: float) -> str:
 
 def text_width(text: str, height: float = HEIGHT) -> float:
     """Return the width of a `text` of a `height`, both mm of paper."""
-    return GLYPH * height * len(text)
+    plain = (unicodedata.normalize("NFD", char)[0] for char in text)
+    wide = (
+        _WIDTHS[ord(char) - 32] if " " <= char <= "~" else _OTHERS.get(char, 1000) for char in plain
+    )
+    return 1e-3 * sum(wide) * height / CAPITAL
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -91,6 +121,8 @@ class Text(ShortRepr):
         Point of the base line at `place`.
     upright : bool
         Whether it reads upwards.
+    squeeze : float
+        Width of its letters over their usual width.
     """
 
     text: str
@@ -98,108 +130,95 @@ class Text(ShortRepr):
     height: float = HEIGHT
     anchor: Literal["start", "middle"] = "start"
     upright: bool = False
+    squeeze: float = 1.0
+
+    @property
+    def width(self) -> float:
+        """Its width, mm of paper."""
+        return self.squeeze * text_width(self.text, self.height)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class LinearDimension(ShortRepr):
-    """A linear dimension: the distance of two points along x or y.
+class Dimension(ShortRepr):
+    """A dimension, or a text with a leader.
 
     Parameters
     ----------
-    first, second : complex, mm
-        The points.
-    line : complex, mm
-        A point of the dimension line.
-    place : complex, mm
-        Middle of the text.
-    vertical : bool
-        Whether it is measured along y.
-    prefix, suffix : str
-        Before and after the number.
+    kind : {"linear", "vertical", "diameter", "radius", "label"}
+        What is measured: along x or y, of a circle, or nothing.
+    value : float, mm
+        What it measures.
+    points : tuple of complex, mm
+        A point of the dimension line and both measured points; both ends of a diameter; or centre
+        and end of a radius.
+    lines : tuple of (n,) complex array, mm
+        What is drawn of it.
+    heads : tuple of (3,) complex array, mm
+        Its arrow heads, point first.
+    text : Text
+        Its text.
     """
 
-    first: complex
-    second: complex
-    line: complex
-    place: complex
-    vertical: bool = False
-    prefix: str = ""
-    suffix: str = ""
-
-    @property
-    def value(self) -> float:
-        """What it measures, mm."""
-        return abs(along(self.second - self.first, self.vertical))
-
-    @property
-    def label(self) -> str:
-        """Its text."""
-        return f"{self.prefix}{decimal(self.value)}{self.suffix}"
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class RoundDimension(ShortRepr):
-    """A diameter or a radius.
-
-    Parameters
-    ----------
-    center : complex, mm
-        Centre of the circle.
-    radius : float, mm
-        Radius of the circle.
-    angle : float, rad
-        Direction from the centre to the arrow.
-    diameter : bool
-        Whether it is a diameter.
-    knee : float or None, mm
-        Distance from the centre where the leader bends into the line under the text; None for a
-        diameter inside its circle, with its text at the centre.
-    prefix, suffix : str
-        Before and after the number.
-    words : str
-        Text instead of the dimension; then the leader points to a place, not to a circle.
-    """
-
-    center: complex
-    radius: float
-    angle: float = 0.0
-    diameter: bool = True
-    knee: float | None = None
-    prefix: str = ""
-    suffix: str = ""
-    words: str = ""
-
-    @property
-    def value(self) -> float:
-        """What it measures, mm."""
-        return 2.0 * self.radius if self.diameter else self.radius
-
-    @property
-    def label(self) -> str:
-        """Its text."""
-        sign = "Ø" if self.diameter else "R"
-        return self.words or f"{self.prefix}{sign}{decimal(self.value)}{self.suffix}"
-
-    def point(self, distance: float) -> complex:
-        """Return the point on the leader at a distance from the centre, mm."""
-        return self.center + cmath.rect(distance, self.angle)
-
-    @property
-    def edge(self) -> complex:
-        """Point of the arrow."""
-        return self.point(self.radius)
-
-
-Dimension = LinearDimension | RoundDimension
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class DrawnDimension(ShortRepr):
-    """A drawn dimension: `lines` (2,) and arrow `heads` (3,), complex, mm, and its `text`."""
-
+    kind: str
+    value: float
+    points: tuple[complex, ...]
     lines: tuple[Plane, ...]
     heads: tuple[Plane, ...]
     text: Text
+
+    @property
+    def label(self) -> str:
+        """Its text."""
+        return self.text.text
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Hatch(ShortRepr):
+    """Cut metal: the plane within an odd number of closed `loops`, complex, mm."""
+
+    loops: tuple[Plane, ...]
+
+    def lines(self, gap: float) -> Iterator[Plane]:
+        """Yield its lines, which rise at 45 deg and are a `gap` apart, both in mm."""
+        turn = np.exp(-0.25j * np.pi)
+        starts = np.concatenate(self.loops) * turn
+        ends = np.concatenate([np.roll(loop, -1) for loop in self.loops]) * turn
+        low, high = starts.imag.min(), starts.imag.max()
+        for level in gap * np.arange(math.ceil(low / gap), math.floor(high / gap) + 1):
+            over = (starts.imag > level) != (ends.imag > level)
+            first, last = starts[over], ends[over]
+            share = (level - first.imag) / (last.imag - first.imag)
+            places = np.sort(first.real + share * (last.real - first.real)) + 1j * level
+            yield from places.reshape(-1, 2) / turn
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Stroke(ShortRepr):
+    """A chain of `points`, complex, mm of paper, on a `layer`; `closed` if it is."""
+
+    layer: str
+    points: Plane
+    closed: bool = False
+
+    @property
+    def kind(self) -> str:
+        """Type of the layer, without wheel."""
+        return self.layer.rpartition("_")[2]
+
+    @property
+    def width(self) -> float:
+        """Width of its line, mm."""
+        return line_width(self.kind)
+
+    @property
+    def dashes(self) -> list[float]:
+        """Dashes and gaps, mm; none if it is continuous."""
+        return [self.width * part for part in PATTERNS.get(LINE_OF.get(self.kind, ""), ())]
+
+
+def line_width(kind: str) -> float:
+    """Return the width of the lines of a `kind` of layer, mm of paper."""
+    return WIDE if kind in HEAVY else NARROW
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -211,7 +230,7 @@ class Sheet(ShortRepr):
     name : str
         Stem of its file, such as ``gear1``.
     title : str
-        First line of the title block.
+        Title in the title block.
     paper : str
         Such as ``A3``, landscape.
     size : (float, float), mm of paper
@@ -221,13 +240,17 @@ class Sheet(ShortRepr):
     corner : complex, mm of the part
         Lower left corner of the paper.
     features : tuple of Feature
-        All lines except those of dimensions.
-    dimensions : tuple of LinearDimension or RoundDimension
-        Dimensions.
+        All lines except those of dimensions and hatches.
+    hatches : tuple of Hatch
+        Cut metal.
+    fills : tuple of (n,) complex array, mm
+        Black areas, such as those of symbols.
+    dimensions : tuple of Dimension
+        Dimensions and texts with leaders.
     texts : tuple of Text
-        All texts except those of dimensions.
+        All other texts.
     rows : tuple of (str, str)
-        The parameter table: label and value.
+        The table of data: label and value.
     """
 
     name: str
@@ -237,28 +260,48 @@ class Sheet(ShortRepr):
     scale: float
     corner: complex
     features: tuple[Feature, ...]
-    dimensions: tuple[Dimension, ...]
-    texts: tuple[Text, ...]
-    rows: tuple[tuple[str, str], ...]
+    hatches: tuple[Hatch, ...] = ()
+    fills: tuple[Plane, ...] = ()
+    dimensions: tuple[Dimension, ...] = ()
+    texts: tuple[Text, ...] = ()
+    rows: tuple[tuple[str, str], ...] = ()
 
     @property
     def unit(self) -> float:
         """Millimetres of the part in a millimetre of paper."""
         return 1.0 / self.scale
 
-    @property
-    def drawn(self) -> tuple[DrawnDimension, ...]:
-        """The dimensions as lines, arrow heads and texts."""
-        return tuple(as_drawn(dimension, self.unit) for dimension in self.dimensions)
-
     def on_paper(self, points: Plane) -> Plane:
         """Return points, complex, mm of the part, as mm of paper from its lower left corner."""
         return (points - self.corner) * self.scale
 
+    @property
+    def strokes(self) -> Iterator[Stroke]:
+        """All its lines, on paper."""
+        for feature in self.features:
+            for points, closed in chains(feature.shape, SAGITTA * self.unit):
+                yield Stroke(layer=feature.layer, points=self.on_paper(points), closed=closed)
+        for hatch in self.hatches:
+            for line in hatch.lines(HATCHED * self.unit):
+                yield Stroke(layer=HATCH, points=self.on_paper(line))
+        for one in self.dimensions:
+            for line in one.lines:
+                yield Stroke(layer=DIMENSION, points=self.on_paper(line))
 
-def along(point: complex, vertical: bool) -> float:
-    """Return a coordinate of a `point`: y if `vertical`, else x."""
-    return point.imag if vertical else point.real
+    @property
+    def blacks(self) -> Iterator[Plane]:
+        """Arrow heads and other black areas, on paper."""
+        heads = (head for one in self.dimensions for head in one.heads)
+        yield from map(self.on_paper, (*heads, *self.fills))
+
+    @property
+    def words(self) -> tuple[Text, ...]:
+        """All its texts, those of dimensions first."""
+        return (*(one.text for one in self.dimensions), *self.texts)
+
+
+HATCHED: Final = 2.0
+"""Distance of the lines of a hatch, mm of paper."""
 
 
 def text_box(text: Text, unit: float) -> Box:
@@ -276,102 +319,9 @@ def text_box(text: Text, unit: float) -> Box:
     complex, complex, mm of the part
         Its lower left and upper right corner, with descenders.
     """
-    wide, tall = text_width(text.text, text.height), text.height
+    wide, tall = text.width, text.height
     start = -0.5 * wide if text.anchor == "middle" else 0.0
     low, high = complex(start, -0.25 * tall), complex(start + wide, tall)
     if text.upright:
         low, high = complex(-tall, start), complex(0.25 * tall, start + wide)
     return text.place + unit * low, text.place + unit * high
-
-
-def as_drawn(dimension: Dimension, unit: float) -> DrawnDimension:
-    """Return a dimension as lines, arrow heads and text.
-
-    Parameters
-    ----------
-    dimension : LinearDimension or RoundDimension
-        The dimension.
-    unit : float
-        Millimetres of the part in a millimetre of paper.
-
-    Returns
-    -------
-    DrawnDimension
-    """
-    if isinstance(dimension, LinearDimension):
-        return _linear(dimension, unit)
-    return _inside(dimension, unit) if dimension.knee is None else _leader(dimension, unit)
-
-
-def arrow_head(tip: complex, way: complex, unit: float) -> Plane:
-    """Return an arrow head.
-
-    Parameters
-    ----------
-    tip : complex, mm
-        Point of the arrow.
-    way : complex
-        Unit vector of its direction.
-    unit : float
-        Millimetres of the part in a millimetre of paper.
-
-    Returns
-    -------
-    (3,) complex array, mm
-        Tip and back corners.
-    """
-    back = tip - ARROW * unit * way
-    side = ARROW * unit / 6.0 * 1j * way
-    return np.array([tip, back + side, back - side])
-
-
-def _linear(dimension: LinearDimension, unit: float) -> DrawnDimension:
-    vertical = dimension.vertical
-    way = 1j if vertical else 1.0
-    level = dimension.line.real if vertical else 1j * dimension.line.imag
-    lines = []
-    for point in (dimension.first, dimension.second):
-        foot = level + along(point, vertical) * way
-        length = abs(foot - point)
-        if length > LEAST_GAP * unit:
-            away = (foot - point) / length * unit
-            lines.append(np.array([point + LEAST_GAP * away, foot + PAST * away]))
-    low, high = sorted(along(point, vertical) for point in (dimension.first, dimension.second))
-    inwards = dimension.value < ARROW_ROOM * unit
-    tail = TAIL * unit if inwards else 0.0
-    start, end, middle = low - tail, high + tail, along(dimension.place, vertical)
-    if middle > high:
-        end = max(end, middle + 0.5 * text_width(dimension.label) * unit)
-    lines.append(level + np.array([start, end]) * way)
-    turn = -1.0 if inwards else 1.0
-    base = dimension.place - 0.5 * HEIGHT * unit * 1j * way
-    text = Text(text=dimension.label, place=base, anchor="middle", upright=vertical)
-    ends = zip((low, high), (-turn * way, turn * way), strict=True)
-    heads = tuple(arrow_head(level + end * way, outwards, unit) for end, outwards in ends)
-    return DrawnDimension(lines=tuple(lines), heads=heads, text=text)
-
-
-def _leader(dimension: RoundDimension, unit: float) -> DrawnDimension:
-    distance = dimension.knee or 0.0
-    knee, edge = dimension.point(distance), dimension.edge
-    wide = text_width(dimension.label) * unit
-    end = knee + (-wide if knee.real <= edge.real else wide)
-    way = dimension.point(1.0) - dimension.center
-    way = -way if distance > dimension.radius else way
-    place = 0.5 * (knee + end) + 1j * GAP * unit
-    return DrawnDimension(
-        lines=(np.array([edge, knee]), np.array([knee, end])),
-        heads=(arrow_head(edge, way, unit),),
-        text=Text(text=dimension.label, place=place, anchor="middle"),
-    )
-
-
-def _inside(dimension: RoundDimension, unit: float) -> DrawnDimension:
-    ends = [dimension.point(-dimension.radius), dimension.edge]
-    way = (ends[1] - ends[0]) / (2.0 * dimension.radius)
-    place = dimension.center + 1j * GAP * unit
-    return DrawnDimension(
-        lines=(np.array(ends),),
-        heads=(arrow_head(ends[0], -way, unit), arrow_head(ends[1], way, unit)),
-        text=Text(text=dimension.label, place=place, anchor="middle"),
-    )

@@ -52,6 +52,7 @@ from gearcam.mechanics.material import MaterialSpec
 from gearcam.mechanics.spring import SpringSpec
 from gearcam.parts.blank import KIND as PARTS
 from gearcam.results.kind import Kind
+from gearcam.sheets.spec import DrawingSpec
 
 if TYPE_CHECKING:
     from gearcam.kinds.cam.forms.translating import PlateBlank
@@ -77,6 +78,8 @@ class CamDesign(Design):
         What the follower works against.
     blank : CamBlank, PlateBlank or ShaftBlank
         Bore, hub, holes, density.
+    drawing : DrawingSpec
+        What workshop drawings say beside sizes.
     output : CamOutputSpec
         Files and their tolerance.
     spring : sequence of SpringSpec
@@ -121,6 +124,7 @@ class CamDesign(Design):
     drive: DriveSpec = field(default_factory=DriveSpec)
     load: tuple[LoadSpec, ...] = ()
     blank: ShaftBlank | PlateBlank = field(default_factory=CamBlank)
+    drawing: DrawingSpec = field(default_factory=DrawingSpec)
     output: CamOutputSpec = field(default_factory=CamOutputSpec)
     spring: tuple[SpringSpec, ...] = ()
     mass: tuple[MassSpec, ...] = ()

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
 
 from gearcam.base.errors import ABOVE, beyond_limit
 from gearcam.kinds.cam.design import CamDesign
@@ -28,6 +31,7 @@ if TYPE_CHECKING:
     from gearcam.parts.body import Part
     from gearcam.parts.checks import CheckedParts
     from gearcam.pictures.drawings import Drawing, Path
+    from gearcam.sheets.part import Turning
 
 _MOST_STEPS: Final = 1e6
 """Largest number of steps of a table."""
@@ -236,6 +240,20 @@ class MadeCam(LoadedCam, PartsResult):
             uncut=(False,) * len(parts),
             sought=not self.drafted,
         )
+
+    def turning(self, number: int) -> Turning | None:
+        """Return how the part of a `number` turns (see `PartsResult.turning`)."""
+        from gearcam.sheets.part import Turning
+
+        wall = self.cam.walls[min(number, len(self.cam.walls) - 1)]
+        if not self.carrier.around:
+            return None
+        zero = 0.5 * math.pi
+        if wall.follower.has_centre:
+            curve = replace(wall.curve, inset=0.0)
+            lift = self.program.derivatives(np.zeros(1), 1)
+            zero = float(np.angle(curve.trace(np.zeros(1), *lift)[0][0]))
+        return Turning(zero=zero, clockwise=wall.hand < 0)
 
     def rows_of(self, number: int) -> Sequence[str]:
         """Return the names of the facts in the table of a part's drawing, by its `number`."""

@@ -33,15 +33,16 @@ from gearcam.mechanics.load import LoadSpec, SlideLoadSpec
 from gearcam.mechanics.mass import MassSpec
 from gearcam.mechanics.material import MaterialSpec
 from gearcam.mechanics.spring import SpringSpec
+from gearcam.sheets.spec import DrawingSpec
 
 __all__ = [
     "AccuracySpec", "BoundsSpec", "CamBlank", "CamDesign", "CamDriveSpec", "CamOutputSpec",
-    "CamResult", "CamSpec", "ConjugateFollower", "ConjugateSpec", "DwellPhase", "FollowSpec",
-    "FollowerDynamicsSpec", "FollowerSpec", "ForcesSpec", "FrictionSpec", "GoalSpec",
+    "CamResult", "CamSpec", "ConjugateFollower", "ConjugateSpec", "DrawingSpec", "DwellPhase",
+    "FollowSpec", "FollowerDynamicsSpec", "FollowerSpec", "ForcesSpec", "FrictionSpec", "GoalSpec",
     "GravitySpec", "GrooveBlank", "GrooveFollower", "GrooveSpec", "LoadSpec", "MassSpec",
-    "MaterialSpec", "MotionFormula", "MotionTable", "PlateBlank", "PlateFollower",
-    "PlateOutput", "PlateSpec", "PrecisionSpec", "ReturnPhase", "RisePhase", "SegmentPhase",
-    "SlideDriveSpec", "SlideLoadSpec", "SpringSpec", "YokeFollower", "YokeSpec",
+    "MaterialSpec", "MotionFormula", "MotionTable", "PlateBlank", "PlateFollower", "PlateOutput",
+    "PlateSpec", "PrecisionSpec", "ReturnPhase", "RisePhase", "SegmentPhase", "SlideDriveSpec",
+    "SlideLoadSpec", "SpringSpec", "YokeFollower", "YokeSpec",
 ]  # fmt: skip
 
 PUBLIC = {name: globals()[name] for name in __all__}

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.facts import Fact, Facts, Tree, extent
 from gearcam.base.numerals import FEW, formatted
-from gearcam.designs.outputs import MESHES
+from gearcam.designs.outputs import DRAWINGS, MESHES
 from gearcam.kinds.cam.motion import of_radii
 from gearcam.kinds.cam.wall_facts import pressure
 from gearcam.kinds.shared import peak_of
@@ -313,8 +313,11 @@ _OF_PARTS: Final = {
     Files: cam.step; of conjugate cams cam1.step, cam2.step, cams.step.
 
     Exact solids for CAD. Needs `pip install "gearcam[step]"`.""",
-    "drawing-dxf": _SHEETS,
-    "drawing-svg": _SHEETS,
+    **dict.fromkeys(DRAWINGS, _SHEETS),
+    "print-pdf": """
+    Files: cam_print.pdf; of conjugate cams cam1_print.pdf, cam2_print.pdf.
+
+    Outlines at full size on A4 pages, with cross marks where they overlap, to be glued together.""",
 }
 
 FILES: Final[Mapping[str, Callable[..., Files]]] = {

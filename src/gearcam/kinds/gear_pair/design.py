@@ -42,6 +42,7 @@ from gearcam.meshing.settings import KIND as MESHING
 from gearcam.parts.blank import KIND as PARTS
 from gearcam.parts.blank import BarSpec, Blank, serving
 from gearcam.results.kind import Kind
+from gearcam.sheets.spec import PairDrawingSpec
 
 NAME: Final = "gear-pair"
 """As in a file."""
@@ -114,6 +115,8 @@ class GearPairDesign(Design):
         What a rack is made from: height, ends, mounting holes.
     steps : StepsSpec
         Steps of stepped wheels.
+    drawing : PairDrawingSpec
+        What workshop drawings say beside sizes.
     output : PairOutputSpec
         Files and their tolerance.
     meshing : MeshingSpec
@@ -157,6 +160,7 @@ class GearPairDesign(Design):
     ring: RingSpec = field(default_factory=RingSpec)
     bar: BarSpec = field(default_factory=BarSpec)
     steps: StepsSpec = field(default_factory=StepsSpec)
+    drawing: PairDrawingSpec = field(default_factory=PairDrawingSpec)
     output: PairOutputSpec = field(default_factory=PairOutputSpec)
     meshing: MeshingSpec = field(default_factory=MeshingSpec)
     errors: ErrorsSpec = field(default_factory=ErrorsSpec)

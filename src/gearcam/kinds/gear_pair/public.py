@@ -13,12 +13,13 @@ from gearcam.mechanics.material import MaterialSpec
 from gearcam.mechanics.wheel_load import WheelLoadSpec
 from gearcam.meshing.settings import ErrorsSpec, MeshingSpec
 from gearcam.parts.blank import BarSpec, Blank, WheelBlank
+from gearcam.sheets.spec import PairDrawingSpec
 
 __all__ = [
     "AccuracySpec", "BarSpec", "Blank", "DriveSpec", "ErrorsSpec", "ForcesSpec", "GearPairDesign",
-    "GearPairResult", "GoalSpec", "MaterialSpec", "MeshingSpec", "PairOutputSpec", "PairSpec",
-    "Rack", "RingSpec", "StepsSpec", "StressSpec", "WheelBlank", "WheelFrictionSpec",
-    "WheelLoadSpec",
+    "GearPairResult", "GoalSpec", "MaterialSpec", "MeshingSpec", "PairDrawingSpec",
+    "PairOutputSpec", "PairSpec", "Rack", "RingSpec", "StepsSpec", "StressSpec", "WheelBlank",
+    "WheelFrictionSpec", "WheelLoadSpec",
 ]  # fmt: skip
 
 PUBLIC = {name: globals()[name] for name in __all__}

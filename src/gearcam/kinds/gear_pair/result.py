@@ -141,7 +141,8 @@ class GearPairResult(MadePair):
         rows = {"law": design.law_type, **sheet_rows(self.facts, PAIR_ROWS)}
         rows["drawn at phi1"] = f"{formatted(math.degrees(pose), FEW)} deg"
         radius = float(abs(self.pair.rolling.tracks[0].frames(np.array([pose])).p[0]))
-        pair = pair_sheet(self.drawing, self.pair.shift, rows, design.name, pitch_radius=radius)
+        heading = self.heading(None)
+        pair = pair_sheet(self.drawing, self.pair.shift, rows, heading, pitch_radius=radius)
         return *super().sheets, pair
 
     def centrode_angles(self, count: int | None = None) -> Array:

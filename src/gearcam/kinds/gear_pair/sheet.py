@@ -17,8 +17,8 @@ from gearcam.numeric.arrays import Plane, bounds
 from gearcam.numeric.contour import Contour
 from gearcam.parts.shapes import extremes, true_points
 from gearcam.pictures.drawings import CENTER, OUTLINE, Circle, Drawing, reach
-from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board
-from gearcam.sheets.paper import begin, finish
+from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board, Measure
+from gearcam.sheets.paper import Heading, begin, finish
 from gearcam.sheets.sheet import CENTERLINE, Sheet, fine
 
 LEFT: Final = 24.0
@@ -37,6 +37,7 @@ _RACK_ROWS: Final = (
     "pair.rack.addendum",
     "pair.rack.dedendum",
     "pair.backlash_mm",
+    "mesh.backlash_mm",
     "pair.face_width_mm",
     "steps.count",
 )
@@ -78,7 +79,7 @@ def pair_sheet(
     drawing: Drawing,
     center_distance: float,
     facts: Mapping[str, str],
-    title: str,
+    heading: Heading,
     *,
     pitch_radius: float,
 ) -> Sheet:
@@ -92,8 +93,8 @@ def pair_sheet(
         Position of the second shaft on x, with the first at 0: negative for a ring; 0 for a rack.
     facts : mapping of str to str
         Rows of the parameter table.
-    title : str
-        First line of the title block.
+    heading : Heading
+        What the title block says.
     pitch_radius : float, mm
         Distance of the pitch point from the driver's axis.
 
@@ -105,7 +106,9 @@ def pair_sheet(
     Raises
     ------
     ValueError
-        If the drawing has no outline, or is too large for the smallest scale.
+        If the drawing has no outline.
+    InfeasibleError
+        If it is too large for the smallest scale.
     """
     if not drawing.contours:
         raise ValueError(f"{drawing.name}: nothing to draw")
@@ -126,10 +129,10 @@ def pair_sheet(
     tolerance = max(contour.tolerance for contour in drawing.contours)
     notes = [
         f"Chord tolerance of the outlines: {fine(tolerance)} mm.",
-        "Dashed: centrodes; they touch at the pitch point.",
+        "Chain lines: centrodes; they touch at the pitch point.",
         "Make each wheel from its own drawing and file.",
     ]
-    return finish(board, name=drawing.name, title=title, facts=facts, notes=notes)
+    return finish(board, heading, name=drawing.name, facts=facts, notes=notes)
 
 
 def _outlines(drawing: Drawing) -> list[Contour | Circle]:
@@ -155,11 +158,9 @@ def _sizes(
     board: Board, points: Plane, center_distance: float, pitch_radius: float, beside: float
 ) -> None:
     """Draw the linear dimensions: pitch radius, centre distance, overall sizes left of `beside`."""
-    unit = board.unit
     left, low, right, high = extremes(points)
-    levels = [low.imag - (FIRST_LEVEL + LEVEL * level) * unit for level in range(LEVELS)]
-    board.linear(0.0, pitch_radius, levels.pop(0))
+    across = [Measure(first=0.0, second=pitch_radius), Measure(first=left, second=right)]
     if center_distance:
-        board.linear(0.0, center_distance, levels.pop(0))
-    board.linear(left, right, levels.pop(0))
-    board.linear(low, high, beside - FIRST_LEVEL * unit, vertical=True)
+        across.append(Measure(first=0.0, second=center_distance))
+    board.measure(across, low.imag)
+    board.measure([Measure(first=low, second=high)], beside, vertical=True)

@@ -12,7 +12,7 @@ from gearcam.base.facts import Fact, Facts, Tree, extent
 from gearcam.base.findings import limit_of
 from gearcam.base.numerals import FEW, formatted
 from gearcam.base.quantities import RPM
-from gearcam.designs.outputs import MESHES
+from gearcam.designs.outputs import DRAWINGS, MESHES
 from gearcam.gears.pair import gear_tree
 from gearcam.gears.subject import KIND, CheckedPair
 from gearcam.kinds.gear_pair.tables import POINTS
@@ -394,8 +394,11 @@ _OF_PARTS: Final = {
 
     Exact solids for CAD: one spline face for each flank, fillet, land and tip, planes and cylinders
     elsewhere. Needs `pip install "gearcam[step]"`.""",
-    "drawing-dxf": _SHEETS,
-    "drawing-svg": _SHEETS,
+    **dict.fromkeys(DRAWINGS, _SHEETS),
+    "print-pdf": """
+    Files: gear1_print.pdf, gear2_print.pdf.
+
+    Outlines at full size on A4 pages, with cross marks where they overlap, to be glued together.""",
 }
 
 FILES: Final[Mapping[str, Callable[..., Files]]] = {

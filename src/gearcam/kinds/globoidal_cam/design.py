@@ -11,7 +11,7 @@ from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.designs.design import Design
 from gearcam.designs.faults import Fault
 from gearcam.designs.nodes import Choice
-from gearcam.designs.outputs import MESHES, files_param, studies_param
+from gearcam.designs.outputs import DRAWINGS, MESHES, files_param, studies_param
 from gearcam.designs.table import table_of
 from gearcam.kinds.follower_tables import load_faults
 from gearcam.kinds.shared import (
@@ -27,6 +27,7 @@ from gearcam.mechanics.load import FORCES
 from gearcam.mechanics.material import MaterialSpec
 from gearcam.parts.blank import CylinderBlank
 from gearcam.results.kind import Kind
+from gearcam.sheets.spec import DrawingSpec
 from gearcam.spatial.globoidal_spec import (
     GloboidalSpec,
     IndexSpec,
@@ -58,7 +59,7 @@ INDEX: Final = Choice(
 
 _HERE: Final = "gearcam.kinds.globoidal_cam"
 
-GLOBOIDAL_FORMATS: Final = ("svg", *MESHES, "csv", "report")
+GLOBOIDAL_FORMATS: Final = ("svg", *MESHES, "csv", *DRAWINGS, "report")
 """What ``output.files`` may list."""
 
 _FOLLOWED: Final = (
@@ -129,6 +130,8 @@ class GloboidalCamDesign(Design):
         Materials of cam and rollers.
     forces : ForcesSpec
         Settings of the study of forces.
+    drawing : DrawingSpec
+        What workshop drawings say beside sizes.
     output : GloboidalOutput
         Files and how fine they are.
     accuracy : AccuracySpec
@@ -162,6 +165,7 @@ class GloboidalCamDesign(Design):
     friction: TurretFrictionSpec = field(default_factory=TurretFrictionSpec)
     material: MaterialSpec = field(default_factory=MaterialSpec)
     forces: ForcesSpec = field(default_factory=ForcesSpec)
+    drawing: DrawingSpec = field(default_factory=DrawingSpec)
     output: GloboidalOutput = field(default_factory=GloboidalOutput)
     accuracy: AccuracySpec = field(default_factory=AccuracySpec)
     goal: GoalSpec = field(default_factory=GoalSpec)

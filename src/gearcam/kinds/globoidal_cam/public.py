@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from gearcam.kinds.globoidal_cam.design import GloboidalCamDesign, GloboidalOutput
 from gearcam.kinds.globoidal_cam.result import GloboidalCamResult
+from gearcam.sheets.spec import DrawingSpec
 from gearcam.spatial.globoidal_spec import (
     GloboidalSpec,
     IndexSpec,
@@ -14,8 +15,8 @@ from gearcam.spatial.globoidal_spec import (
 )
 
 __all__ = [
-    "GloboidalCamDesign", "GloboidalCamResult", "GloboidalOutput", "GloboidalSpec", "IndexSpec",
-    "TurretFrictionSpec", "TurretLoadSpec", "TurretMassSpec", "TurretSpec",
+    "DrawingSpec", "GloboidalCamDesign", "GloboidalCamResult", "GloboidalOutput", "GloboidalSpec",
+    "IndexSpec", "TurretFrictionSpec", "TurretLoadSpec", "TurretMassSpec", "TurretSpec",
 ]  # fmt: skip
 
 PUBLIC = {name: globals()[name] for name in __all__}

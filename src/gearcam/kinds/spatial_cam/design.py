@@ -13,7 +13,7 @@ from gearcam.base.quantities import ANGLE, COUNT, LENGTH, param
 from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.designs.design import Design
 from gearcam.designs.faults import Fault
-from gearcam.designs.outputs import MESHES, files_param, studies_param
+from gearcam.designs.outputs import DRAWINGS, MESHES, files_param, studies_param
 from gearcam.kinds.cam.public import MOTION, circumstances, measured_faults
 from gearcam.kinds.follower_tables import load_faults
 from gearcam.kinds.shared import (
@@ -30,6 +30,7 @@ from gearcam.mechanics.material import MaterialSpec
 from gearcam.mechanics.spring import SpringSpec
 from gearcam.parts.blank import CylinderBlank
 from gearcam.results.kind import Kind
+from gearcam.sheets.spec import DrawingSpec
 from gearcam.spatial.friction import SpaceFrictionSpec
 from gearcam.spatial.spec import CylinderSpec, SpatialFollower
 from gearcam.spatial.tool import MillSpec
@@ -44,7 +45,7 @@ NAME: Final = "spatial-cam"
 _HERE: Final = "gearcam.kinds.spatial_cam"
 
 SPATIAL_FORMATS: Final = (
-    "dxf", "svg", *MESHES, "step", "csv", "report", "tool-path", "gcode", "caliper",
+    "dxf", "svg", *MESHES, "step", "csv", *DRAWINGS, "report", "tool-path", "gcode", "caliper",
 )  # fmt: skip
 """What ``output.files`` may list."""
 
@@ -124,6 +125,8 @@ class SpatialCamDesign(Design):
         Settings of the study of forces.
     tool : MillSpec
         The end mill of its tool path.
+    drawing : DrawingSpec
+        What workshop drawings say beside sizes.
     output : SpatialOutput
         Files and how fine they are.
     developed : DevelopedSpec
@@ -158,6 +161,7 @@ class SpatialCamDesign(Design):
     material: MaterialSpec = field(default_factory=MaterialSpec)
     forces: ForcesSpec = field(default_factory=ForcesSpec)
     tool: MillSpec = field(default_factory=MillSpec)
+    drawing: DrawingSpec = field(default_factory=DrawingSpec)
     output: SpatialOutput = field(default_factory=SpatialOutput)
     developed: DevelopedSpec = field(default_factory=DevelopedSpec)
     accuracy: AccuracySpec = field(default_factory=AccuracySpec)

@@ -1,0 +1,107 @@
+"""Symbols beside dimensions: line of a section, datum, and tolerance frames (ISO 1101, 5459).
+
+Depends on sheets only.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import Final
+
+import numpy as np
+
+from gearcam.parts.shapes import Circle
+from gearcam.sheets.board import Board
+from gearcam.sheets.sheet import CENTERLINE, CUT, DIMENSION, HEIGHT, Text, text_width
+
+FRAME: Final = 2.0 * HEIGHT
+"""Height of a tolerance frame, mm of paper."""
+
+
+def section_line(board: Board, x: float, low: float, high: float) -> None:
+    """Draw the line of the section A-A at `x` through a view from `low` to `high`, mm."""
+    unit = board.unit
+    board.line(CENTERLINE, complex(x, low - 2.0 * unit), complex(x, high + 2.0 * unit))
+    for end, way in ((low, -1.0), (high, 1.0)):
+        near, far = (complex(x, end + way * unit * away) for away in (2.0, 8.0))
+        board.line(CUT, near, far)
+        at = far - 1j * way * unit
+        board.line(DIMENSION, at, at + 6.0 * unit)
+        board.arrow(at + 6.0 * unit, 1.0)
+        place = at + (-2.5 - 1j * (0.5 + 0.5 * way) * 3.5) * unit + 0.5j * unit
+        board.write(Text(text="A", place=place, height=3.5, anchor="middle"))
+
+
+def _box(board: Board, low: complex, *cells: str) -> None:
+    """Draw cells of a frame with a text each, from their lower left corner, mm."""
+    unit = board.unit
+    for text in cells:
+        wide = max(FRAME, text_width(text) + 2.0) if text else FRAME
+        high = low + complex(wide, FRAME) * unit
+        board.line(
+            DIMENSION, low, complex(high.real, low.imag), high, complex(low.real, high.imag),
+            closed=True,
+        )  # fmt: skip
+        if text:
+            place = low + complex(0.5 * wide, 0.5 * (FRAME - HEIGHT)) * unit
+            board.write(Text(text=text, place=place, anchor="middle"))
+        low += wide * unit
+
+
+def datum(board: Board, point: complex, way: complex) -> None:
+    """Draw the symbol of the datum A at a `point`, mm, on the side of the unit vector `way`."""
+    unit = board.unit
+    side, back = 1.5j * way * unit, point + 2.6 * way * unit
+    board.fills.append(np.array([point + side, point - side, back]))
+    stem = back + 3.0 * way * unit
+    board.line(DIMENSION, back, stem)
+    middle = stem + 0.5 * FRAME * way * unit
+    _box(board, middle - 0.5 * FRAME * unit * (1.0 + 1j), "A")
+
+
+def frame(board: Board, point: complex, kind: str, value: str, reference: str = "") -> bool:
+    """Draw a tolerance frame with a leader to a `point`.
+
+    Parameters
+    ----------
+    board : Board
+        The sheet.
+    point : complex, mm
+        On the edge that it is about.
+    kind : {"runout", "profile"}
+        Circular run-out, or the profile of a line.
+    value : str
+        The tolerance.
+    reference : str
+        The datum.
+
+    Returns
+    -------
+    bool
+        False if there is no space: the table has it then.
+    """
+    unit, cells = board.unit, [one for one in (value, reference) if one]
+    wide = FRAME + sum(max(FRAME, text_width(one) + 2.0) for one in cells)
+    spot = Circle(center=point, diameter=0.02 * unit)
+    found = board.place(spot, complex(wide, FRAME))
+    if found is None:
+        name = {"runout": "circular run-out", "profile": "profile of the outline"}[kind]
+        board.rows.append((name, " ".join(cells)))
+        return False
+    angle, knee = found
+    spoke = cmath.rect(1.0, angle)
+    bend = point + knee * spoke
+    low = bend - (wide * unit if spoke.real <= 0.0 else 0.0)
+    board.line(DIMENSION, point, bend)
+    board.arrow(point, -spoke)
+    _box(board, low, "", *cells)
+    middle = low + 0.5 * FRAME * unit * (1.0 + 1j)
+    if kind == "profile":
+        arc = 1.4 * unit * np.exp(1j * np.linspace(0.0, math.pi, 19))
+        board.line(DIMENSION, *(middle - 0.7j * unit + arc).tolist(), closed=True)
+    else:
+        rise = cmath.rect(1.7 * unit, math.radians(50.0))
+        board.line(DIMENSION, middle - rise, middle + rise)
+        board.arrow(middle + rise, rise / abs(rise), 0.6)
+    return True
