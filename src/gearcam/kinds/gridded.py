@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from gearcam.mechanics.driver_axis import DriverAxis
     from gearcam.parts.body import Part
     from gearcam.results.parts import Estimates
+    from gearcam.sheets.sheet import Sheet
     from gearcam.spatial.loaded import RollerTouch
 
 
@@ -233,6 +234,11 @@ class GriddedCam(LoadedCam, Result):
             outside = [Circle(center=0j, diameter=2.0 * one) for one in self.rims]
             made_bevels = bevels(made, blank.chamfer, work, outside)
             return replace(made, bevels=tuple(made_bevels))
+
+    @cached_property
+    @abstractmethod
+    def sheets(self) -> tuple[Sheet, ...]:
+        """The workshop drawing."""
 
     @property
     def turned_bore(self) -> float:

@@ -10,9 +10,12 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearcam.base.facts import Fact, Tree
-from gearcam.designs.outputs import MESHES
+from gearcam.designs.outputs import DRAWINGS, MESHES
 from gearcam.kinds.gridded import ORDERS
 from gearcam.kinds.shared import peak_of
+
+_FINE: Final = 1e-3
+"""Tolerance of outlines in DXF, mm."""
 
 if TYPE_CHECKING:
     from gearcam.kinds.gridded import GriddedCam
@@ -161,5 +164,27 @@ def _mesh_files(kind: str) -> FileMaker:
     return maker
 
 
-SOLIDS: Final[Mapping[str, Callable[..., Files]]] = {kind: _mesh_files(kind) for kind in MESHES}
-"""What makes the solid, by format."""
+def _sheets(kind: str, result: GriddedCam, _: Any) -> Files:
+    from gearcam.export.dxf import DxfStyle
+    from gearcam.results.parts import sheet_files
+
+    return sheet_files(kind, result.sheets, result.design.name, DxfStyle(tolerance=_FINE))
+
+
+def _sheet_files(kind: str) -> FileMaker:
+    """Return what makes the workshop drawing of a cam in space in a format."""
+    maker = partial(_sheets, kind)
+    maker.__doc__ = f"""Return the workshop drawing.
+
+    Files: cam_drawing.{kind}.
+
+    Face, section, the outside unrolled with the middle line of the groove, dimensions and tables.
+    """
+    return maker
+
+
+SOLIDS: Final[Mapping[str, Callable[..., Files]]] = {
+    **{kind: _mesh_files(kind) for kind in MESHES},
+    **{name: _sheet_files(name.removeprefix("drawing-")) for name in DRAWINGS},
+}
+"""What makes solid and drawing, by format."""

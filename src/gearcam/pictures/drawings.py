@@ -201,6 +201,14 @@ def chains(shape: Shape, sagitta: float) -> Iterator[tuple[Plane, bool]]:
             yield shape.polyline(sagitta), True
 
 
+def chained(*features: Feature) -> tuple[Feature, ...]:
+    """Return features with the polygons of their contours as paths."""
+    return tuple(
+        replace(one, shape=Path(points=one.shape.points)) if isinstance(one.shape, Contour) else one
+        for one in features
+    )
+
+
 def place(features: Iterable[Feature], pose: Pose, prefix: str = "") -> tuple[Feature, ...]:
     """Return features placed (see `placed`), with a prefix before their layers."""
     return tuple(

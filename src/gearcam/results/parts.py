@@ -9,7 +9,7 @@ from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 
 from gearcam.base.errors import InfeasibleError
-from gearcam.designs.outputs import MESHES
+from gearcam.designs.outputs import DRAWINGS, MESHES
 from gearcam.results.kind import Files
 from gearcam.results.result import Result
 
@@ -365,26 +365,35 @@ def _step(result: PartsResult, _: Measured) -> Files:
     return files
 
 
-def _sheet_svg(result: PartsResult, _: Measured) -> Files:
-    """Return the workshop drawings as SVG."""
+def sheet_files(kind: str, sheets: Sequence[Sheet], title: str, style: DxfStyle) -> Files:
+    """Return workshop drawings as files.
+
+    Parameters
+    ----------
+    kind : {"dxf", "svg", "pdf"}
+        Their format.
+    sheets : sequence of Sheet
+        The drawings.
+    title : str
+        Title of a PDF.
+    style : DxfStyle
+        How outlines are written in DXF.
+    """
+    from gearcam.export.sheet_dxf import sheet_dxf
+    from gearcam.export.sheet_pdf import sheet_pdf
     from gearcam.export.sheet_svg import sheet_svg
 
-    return {f"{one.name}_drawing.svg": sheet_svg(one) for one in result.sheets}
+    write: dict[str, Callable[[Sheet], bytes]] = {
+        "dxf": lambda one: sheet_dxf(one, style),
+        "svg": sheet_svg,
+        "pdf": lambda one: sheet_pdf([one], title),
+    }
+    return {f"{one.name}_drawing.{kind}": write[kind](one) for one in sheets}
 
 
-def _sheet_dxf(result: PartsResult, _: Measured) -> Files:
-    """Return the workshop drawings as DXF."""
-    from gearcam.export.sheet_dxf import sheet_dxf
-
-    return {f"{one.name}_drawing.dxf": sheet_dxf(one, result.dxf_style) for one in result.sheets}
-
-
-def _sheet_pdf(result: PartsResult, _: Measured) -> Files:
-    """Return the workshop drawings as PDF."""
-    from gearcam.export.sheet_pdf import sheet_pdf
-
-    name = result.design.name
-    return {f"{one.name}_drawing.pdf": sheet_pdf([one], name) for one in result.sheets}
+def _sheets(kind: str, result: PartsResult, _: Measured) -> Files:
+    """Return the workshop drawings in a format."""
+    return sheet_files(kind, result.sheets, result.design.name, result.dxf_style)
 
 
 def _print_pdf(result: PartsResult, _: Measured) -> Files:
@@ -404,9 +413,7 @@ _MAKERS: Final[Mapping[str, Callable[..., Files]]] = {
     "svg": _svg,
     **{kind: partial(_mesh, kind) for kind in MESHES},
     "step": _step,
-    "drawing-dxf": _sheet_dxf,
-    "drawing-svg": _sheet_svg,
-    "drawing-pdf": _sheet_pdf,
+    **{name: partial(_sheets, name.removeprefix("drawing-")) for name in DRAWINGS},
     "print-pdf": _print_pdf,
 }
 """What makes each format of files of parts."""

@@ -41,7 +41,7 @@ MARGIN: Final = 10.0
 """Margins of the frame from the paper's left edge, and from the other edges, mm."""
 
 TABLE: Final = 86.0
-LABELS: Final = 45.0
+LABELS: Final = 50.0
 ROW: Final = 5.0
 LEAST_ROW: Final = 2.9
 """Width of the tables and of labels, and usual and least height of a row, mm."""
@@ -60,6 +60,9 @@ SCALES: Final = tuple(base * 10.0**power for power in range(2, -7, -1) for base 
     2:
 ]
 """100:1 and smaller."""
+
+ALONE: Final = 36.0
+"""Space for dimensions beside a view that stands below the others, mm."""
 
 _FEW: Final = 4
 """Digits of numbers in rows with several numbers."""
@@ -128,7 +131,7 @@ def area_of(paper: str) -> Box:
     return low, complex(wide - MARGIN - TABLE - PAD, tall - MARGIN - PAD)
 
 
-def choose(size: complex, room: complex, rows: int) -> tuple[str, float]:
+def choose(size: complex, room: complex, rows: int, wide: float = 0.0) -> tuple[str, float]:
     """Return paper and scale.
 
     Parameters
@@ -139,6 +142,8 @@ def choose(size: complex, room: complex, rows: int) -> tuple[str, float]:
         Space for dimensions and gaps besides the views, across and up.
     rows : int
         Number of rows of the tables.
+    wide : float, mm
+        Width of a view that stands below the others.
 
     Returns
     -------
@@ -159,6 +164,7 @@ def choose(size: complex, room: complex, rows: int) -> tuple[str, float]:
             scale
             for scale in SCALES
             if scale * size.real <= free.real and scale * size.imag <= free.imag
+            if scale * wide <= (high - low).real - ALONE
         ]
         row = ROW if paper == "A4" else LEAST_ROW
         long = (rows + 1) * row > tall - 2 * MARGIN - BLOCK[1]
@@ -190,7 +196,7 @@ def _row_text(fact: NamedFact) -> str:
     return f"{formatted(value)} {unit}".rstrip() if isinstance(value, float) else fact.text
 
 
-def begin(size: complex, room: Box, low: complex, rows: int) -> Board:
+def begin(size: complex, room: Box, low: complex, rows: int, wide: float = 0.0) -> Board:
     """Return an empty sheet with the views centred in their area.
 
     Parameters
@@ -203,6 +209,8 @@ def begin(size: complex, room: Box, low: complex, rows: int) -> Board:
         Lower left corner of the views.
     rows : int
         Number of rows of the tables.
+    wide : float, mm
+        Width of a view that stands below the others.
 
     Returns
     -------
@@ -214,9 +222,11 @@ def begin(size: complex, room: Box, low: complex, rows: int) -> Board:
     InfeasibleError
         If the views are too large for the smallest scale.
     """
-    paper, scale = choose(size, room[0] + room[1], rows)
+    paper, scale = choose(size, room[0] + room[1], rows, wide)
     first, last = area_of(paper)
     idle = last - first - room[0] - room[1] - scale * size
+    if wide:
+        idle = complex(min(idle.real, (last - first).real - ALONE - scale * wide), idle.imag)
     corner = low - (first + room[0] + 0.5 * idle) / scale
     area = corner + first / scale, corner + last / scale
     return Board(scale=scale, area=area, paper=paper, corner=corner)
@@ -308,7 +318,7 @@ def _least(height: float) -> float:
 
 
 def _write(board: Board, text: str, place: complex, wide: float, height: float = HEIGHT) -> None:
-    """Write a line, lower and then narrower if it is longer than its space, in blanks for breaks."""
+    """Write a line, lower and then narrower if it is longer than its space."""
     text = " ".join(text.split())
     if text:
         height = _least(height * min(1.0, wide / text_width(text, height)))

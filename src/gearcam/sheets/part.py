@@ -14,19 +14,19 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Final
+from typing import Any, Final, cast
 
 import numpy as np
 
 from gearcam.base.numerals import decimal
 from gearcam.numeric.arrays import Plane, bounds
 from gearcam.numeric.pose import Pose
-from gearcam.parts.body import Hub, Opening, Part
+from gearcam.parts.body import Bevel, Hub, Opening, Part, ScrewHole
 from gearcam.parts.shapes import Circle, Loop, extremes, true_points
-from gearcam.pictures.drawings import BORE, HOLE, SLOT, part_features, placed
+from gearcam.pictures.drawings import BORE, HOLE, SLOT, Drawing, box, part_features, place, placed
 from gearcam.sheets.board import AROUND, FIRST_LEVEL, LEVEL, OVERHANG, Board, Measure, direction
 from gearcam.sheets.board import label_of as label
 from gearcam.sheets.paper import NO_VALUES, Heading, Values, begin, finish
@@ -40,8 +40,10 @@ RIGHT: Final = 28.0
 ABOVE: Final = 16.0
 BELOW: Final = 5.0
 BORE_ROOM: Final = 44.0
+UNROLLED: Final = 36.0
 """Space for dimensions left of, between, right of and above the views, more below the front view
-for the line of the section, and for those of the bore's view, mm of paper."""
+for the line of the section, for those of the bore's view,
+and for those of an unrolled outside, mm of paper."""
 
 SAME: Final = 1e-6
 """Sizes, mm, and angles, rad, that differ by less are equal."""
@@ -69,6 +71,28 @@ class Turning:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
+class Unrolled:
+    """What the sheet of a cam in space shows beside its blank.
+
+    Parameters
+    ----------
+    loops : sequence of (n,) complex array, mm
+        What the section cuts of its solid: z and y, with z = 0 at the back.
+    drawing : Drawing
+        Its outside unrolled, the lower left corner at 0.
+    title : str
+        What is written above that.
+    note : str
+        Where its walls are given.
+    """
+
+    loops: Sequence[Plane]
+    drawing: Drawing
+    title: str
+    note: str
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
 class _Wheel:
     """A part with the data of its sheet; points are on the true curves.
 
@@ -78,6 +102,7 @@ class _Wheel:
     part: Part
     points: Plane
     toothed: Plane
+    unrolled: Unrolled | None = None
 
     @cached_property
     def low(self) -> complex:
@@ -109,6 +134,11 @@ class _Wheel:
     @cached_property
     def bore(self) -> Opening | None:
         return next((one for one in self.part.openings if one.kind == BORE), None)
+
+    @property
+    def fits(self) -> Mapping[str, Any]:
+        """Sizes of the bore that have tolerance classes."""
+        return self.bore.fits if self.bore else {}
 
     @property
     def keyed(self) -> Loop | None:
@@ -150,7 +180,9 @@ class _Wheel:
             replace(one, openings=tuple(turned.get(id(o), o) for o in one.openings))
             for one in part.layers
         ]
-        return Section(layers=layers, pockets=part.pockets, x=self.plane, tolerance=part.tolerance)
+        # chamfers are told in words; a set screw is turned into the plane
+        pockets = [one for one in part.pockets if not isinstance(one, Bevel | ScrewHole)]
+        return Section(layers=layers, pockets=pockets, x=self.plane, tolerance=part.tolerance)
 
 
 def _holes_of(part: Part) -> list[Circle]:
@@ -181,6 +213,7 @@ def part_sheet(
     *,
     turning: Turning | None = None,
     values: Values = NO_VALUES,
+    unrolled: Unrolled | None = None,
 ) -> Sheet:
     """Return the sheet of a part.
 
@@ -196,6 +229,8 @@ def part_sheet(
         How a cam turns.
     values : Values
         A second table.
+    unrolled : Unrolled, optional
+        What is shown of a cam in space, of which the part is the blank.
 
     Returns
     -------
@@ -209,14 +244,22 @@ def part_sheet(
     """
     points = true_points(part.contours[-1:])
     toothed = true_points(part.inner[-1:]) if part.inner else points
-    wheel = _Wheel(part=part, points=points, toothed=toothed)
+    wheel = _Wheel(part=part, points=points, toothed=toothed, unrolled=unrolled)
     size = wheel.high - wheel.low + part.thickness + (2.0 * wheel.radius if wheel.keyed else 0.0)
     levels = max(1 + len(part.bosses) + len(part.recesses), 1 + wheel.placed)
     below = BELOW + FIRST_LEVEL + LEVEL * levels
     across = BETWEEN + RIGHT + (BORE_ROOM if wheel.keyed else 0.0)
     rows = len(facts) + len(part.openings) + 2 + values.tall
-    board = begin(size, (complex(LEFT, below), complex(across, ABOVE)), wheel.low, rows)
+    low, wide = wheel.low, 0.0
+    if unrolled is not None:
+        outside = box(unrolled.drawing.features)[1]
+        size, low, wide = size + 1j * outside.imag, low - 1j * outside.imag, outside.real
+        below += UNROLLED
+    board = begin(size, (complex(LEFT, below), complex(across, ABOVE)), low, rows, wide)
     side = wheel.high.real + BETWEEN * board.unit
+    if unrolled is not None:
+        under = below - UNROLLED + 10.0
+        _unrolled(board, unrolled, wheel.low - 1j * under * board.unit)
     _front_view(board, wheel)
     _section(board, wheel, side)
     if wheel.keyed is not None:
@@ -225,7 +268,7 @@ def part_sheet(
     _section_sizes(board, wheel, side)
     if turning is not None:
         _turning(board, wheel, turning)
-    _callouts(board, wheel)
+    _callouts(board, wheel, side)
     _frames(board, wheel, heading, side)
     return finish(
         board,
@@ -238,15 +281,16 @@ def part_sheet(
 
 
 def _notes(wheel: _Wheel) -> list[str]:
-    part, chamfer = wheel.part, getattr(wheel.part, "chamfer", 0.0)
+    part, chamfer = wheel.part, wheel.part.chamfer
     about = " R, X, Y and angles from the axis." if wheel.turns else ""
     about = " X, Y from the cross." if wheel.placed else about
     return [
         *([f"Chamfer {decimal(chamfer)} x 45 deg on both faces."] if chamfer else []),
         *(["Holes go right through."] if part.openings else []),
         f"All sizes are finished sizes.{about}",
-        f"Outline: see the DXF file of this part; its chord tolerance is {fine(part.tolerance)} "
-        "mm.",
+        wheel.unrolled.note
+        if wheel.unrolled
+        else f"Outline: DXF file of this part, chord tolerance {fine(part.tolerance)} mm.",
     ]
 
 
@@ -289,12 +333,18 @@ def _front_sizes(board: Board, wheel: _Wheel) -> None:
 
 def _section(board: Board, wheel: _Wheel, left: float) -> None:
     """Draw the section, with its back at x = `left`."""
-    part, section = wheel.part, wheel.section
-    shift = left - section.heights[0]
-    end = shift + section.heights[-1]
-    board.hatch([loop + shift for loop in section.metal])
-    for start, stop in section.lines:
-        board.line(EDGE, start + shift, stop + shift)
+    part = wheel.part
+    shift, end = left - part.ends[0], left + part.thickness
+    cut = wheel.section.metal if wheel.unrolled is None else wheel.unrolled.loops
+    board.hatch([loop + shift for loop in cut])
+    if wheel.unrolled is None:
+        for start, stop in wheel.section.lines:
+            board.line(EDGE, start + shift, stop + shift)
+    else:
+        for loop in cut:
+            board.line(EDGE, *(loop + shift).tolist(), closed=True)
+        for x in (left, end):
+            board.line(EDGE, complex(x, -wheel.radius), complex(x, wheel.radius))
     over = OVERHANG * board.unit
     middles = [0.0] if wheel.turns else []
     middles += [
@@ -306,8 +356,21 @@ def _section(board: Board, wheel: _Wheel, left: float) -> None:
         board.line(CENTERLINE, complex(left - over, y), complex(end + over, y))
     if wheel.keyed is not None:
         _corner(board, wheel, left, end)
+    if part.screw is not None:
+        _screw(board, part.screw, shift, wheel.radius)
     title = complex(0.5 * (left + end), wheel.high.imag + 6.0 * board.unit)
     board.write(Text(text="A-A", place=title, height=3.5, anchor="middle"))
+
+
+def _unrolled(board: Board, unrolled: Unrolled, high: complex) -> None:
+    """Draw the unrolled outside of a cam from its upper left corner on."""
+    end = box(unrolled.drawing.features)[1]
+    first, last = high - 1j * end.imag, high + end.real
+    for feature in place(unrolled.drawing.features, Pose(0.0, first)):
+        board.draw(feature.layer, feature.shape)
+    around = Measure(first=first, second=complex(last.real, first.imag), aside=True)
+    board.measure([around], first.imag)
+    board.write(Text(text=unrolled.title, place=high + 3.0j * board.unit))
 
 
 def _corner(board: Board, wheel: _Wheel, left: float, end: float) -> None:
@@ -319,12 +382,27 @@ def _corner(board: Board, wheel: _Wheel, left: float, end: float) -> None:
         board.line(EDGE, complex(left, y), complex(end, y))
 
 
+def _screw(board: Board, screw: ScrewHole, shift: float, inner: float) -> None:
+    """Draw the hole of a set screw below the bore, and say its thread and place."""
+    outer, middle = 0.5 * cast("Circle", screw.edge).diameter, shift + screw.middle
+    for x in (shift + screw.low, shift + screw.high):
+        board.line(EDGE, complex(x, -inner), complex(x, -outer))
+    over = OVERHANG * board.unit
+    board.line(CENTERLINE, complex(middle, -inner + over), complex(middle, -outer - over))
+    at = f"at {decimal(math.degrees(screw.angle))} deg, z {decimal(screw.middle)} mm"
+    board.rows.append((_thread(screw), at))
+
+
+def _thread(screw: ScrewHole) -> str:
+    return f"set screw M{decimal(screw.size)}"
+
+
 def _section_sizes(board: Board, wheel: _Wheel, left: float) -> None:
     part, hub = wheel.part, wheel.part.hub or Hub(diameter=0.0)
     back, end, base = left + hub.back, left + part.thickness, wheel.low.imag
     rim = 1j * _lowest(wheel)
     lengths = [Measure(first=back + rim, second=back + part.width + rim)]
-    if part.bosses and len(part.bosses) + 1 > 1:
+    if part.bosses:
         foot = -0.5j * hub.diameter
         lengths += [
             Measure(first=back + boss.low + foot, second=back + boss.high + foot)
@@ -336,7 +414,7 @@ def _section_sizes(board: Board, wheel: _Wheel, left: float) -> None:
         lengths.append(Measure(first=depth[0], second=depth[1]))
     board.measure(lengths, base)
     beside: list[Measure] = []
-    fits: Mapping[str, Any] = getattr(wheel.bore, "fits", {})
+    fits = wheel.fits
     if wheel.bore and wheel.keyed is None:
         words = label(Circle(center=0j, diameter=2.0 * wheel.radius))
         beside.append(_upright(end, wheel.radius, fitted(words, fits.get("diameter"))))
@@ -365,7 +443,7 @@ def _bore_view(board: Board, wheel: _Wheel, left: float) -> None:
     """Draw a bore to the right of x = `left`, with its keyway or flat at the top."""
     bore, floor = wheel.keyed, _floor(wheel.keyed)  # type: ignore[arg-type]
     kind = "keyway" if len(bore.points) == 5 else "flat"  # type: ignore[union-attr]
-    fits: Mapping[str, Any] = getattr(wheel.bore, "fits", {})
+    fits = wheel.fits
     radius, middle = wheel.radius, complex(floor.mean())
     unit, x, top, way = board.unit, left + wheel.radius, abs(middle), cmath.phase(middle)
     board.draw(EDGE, placed(bore, Pose(UP - way, x)))  # type: ignore[arg-type]
@@ -428,7 +506,7 @@ def _frames(board: Board, wheel: _Wheel, heading: Heading, left: float) -> None:
         frame(board, spot, "runout", fine(notes.runout), "A")
 
 
-def _callouts(board: Board, wheel: _Wheel) -> None:
+def _callouts(board: Board, wheel: _Wheel, side: float) -> None:
     """Draw the leaders into the front view, those with fixed places first."""
     part = wheel.part
     _holes(board, part)
@@ -437,13 +515,13 @@ def _callouts(board: Board, wheel: _Wheel) -> None:
     for opening in part.openings:
         if opening.kind == SLOT and isinstance(opening.shape, Loop):
             _slot(board, opening.shape)
+    if part.screw is not None:
+        edge = complex(side - part.ends[0] + part.screw.middle, -part.screw.edge.reach)
+        board.label(edge, _thread(part.screw))
     for mark in part.marks:
         words = f"mark {{}}, {decimal(mark.depth)} deep"
-        if not board.callout(mark.circle, words):
-            board.rows.append(("mark", label(mark.circle, words)))
-    if screw := getattr(part, "set_screw", None):
-        at = f"{decimal(math.degrees(screw.angle))} deg, {decimal(screw.height)} mm from the back"
-        board.rows.append((f"set screw {screw.name}", at))
+        if not board.callout(mark.edge, words):
+            board.rows.append(("mark", label(mark.edge, words)))
 
 
 def _radii(board: Board, wheel: _Wheel) -> None:

@@ -29,7 +29,7 @@ def section_line(board: Board, x: float, low: float, high: float) -> None:
         at = far - 1j * way * unit
         board.line(DIMENSION, at, at + 6.0 * unit)
         board.arrow(at + 6.0 * unit, 1.0)
-        place = at + (-2.5 - 1j * (0.5 + 0.5 * way) * 3.5) * unit + 0.5j * unit
+        place = at + (8.5 - 1.75j) * unit
         board.write(Text(text="A", place=place, height=3.5, anchor="middle"))
 
 

@@ -317,7 +317,7 @@ _OF_PARTS: Final = {
     "print-pdf": """
     Files: cam_print.pdf; of conjugate cams cam1_print.pdf, cam2_print.pdf.
 
-    Outlines at full size on A4 pages, with cross marks where they overlap, to be glued together.""",
+    Outlines at full size on A4 pages, with cross marks where these overlap, to glue on plywood.""",
 }
 
 FILES: Final[Mapping[str, Callable[..., Files]]] = {

@@ -79,8 +79,8 @@ def _cam(result: SpatialCamResult) -> Tree:
         "cone_deg": math.degrees(cam.roller.half_angle) or None,
         "arm_mm": follower.arm,
         "groove_width_mm": {
-            "outer": 2.0 * tool.radius_at(cam.outer_radius),
-            "floor": 2.0 * tool.radius_at(cam.floor),
+            "outer": Fact(2.0 * tool.radius_at(cam.outer_radius), "groove width, outside"),
+            "floor": Fact(2.0 * tool.radius_at(cam.floor), "groove width at the floor"),
         }
         if len(cam.sides) > 1 and not cam.apart
         else None,

@@ -1,0 +1,105 @@
+"""Workshop drawings of cams in space: face, section, the outside unrolled, a table of the motion.
+
+The outside is seen from outside, with the azimuth in the cam's frame from left to right.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from gearcam.base.numerals import decimal
+from gearcam.kinds.gridded import STEM
+from gearcam.numeric.pose import Pose
+from gearcam.parts.body import Opening, Part
+from gearcam.parts.shapes import Circle
+from gearcam.pictures.drawings import Drawing, box, place
+from gearcam.sheets.paper import Heading, Values, sheet_rows
+from gearcam.sheets.part import Turning, Unrolled, part_sheet
+from gearcam.sheets.sections import mesh_loops
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from gearcam.kinds.gridded import GriddedCam
+    from gearcam.numeric.arrays import Array
+    from gearcam.numeric.mesh import Mesh
+    from gearcam.sheets.sheet import Sheet
+
+_STEPS: Final = 360
+_PLACES: Final = 5
+"""Largest numbers of cam angles, and of places along the roller, of the solid that is cut."""
+
+_TABLE: Final = 15.0
+"""Step of the cam angle in the table of the motion, deg."""
+
+_FINE: Final = 1e-3
+"""Chord tolerance of the outline of the face, mm."""
+
+
+def cam_sheet(
+    result: GriddedCam,
+    drawing: Drawing,
+    rows: Sequence[str],
+    column: tuple[str, Callable[[Array], Array]],
+    texts: tuple[str, str],
+) -> Sheet:
+    """Return the sheet of a cam in space.
+
+    Parameters
+    ----------
+    result : GriddedCam
+        The cam.
+    drawing : Drawing
+        Its outside unrolled.
+    rows : sequence of str
+        Names of the facts in the table of data.
+    column : (str, callable)
+        What is tabled, and its values at cam angles, rad.
+    texts : (str, str)
+        What is written above the unrolled outside, and where its walls are given.
+
+    Returns
+    -------
+    Sheet
+    """
+    design, (_, base, length) = result.design, result.core_size
+    radius = max(result.rims)
+    outline = Circle(center=0j, diameter=2.0 * radius).contour(_FINE)
+    if result.core is not None:
+        part = replace(result.core, contours=(outline,))
+    else:
+        bore = 2.0 * result.turned_bore
+        shape = Circle(center=0j, diameter=bore) if bore else None
+        openings = (Opening(kind="BORE", shape=shape, name="bore"),) if shape else ()
+        part = Part(name=STEM, contours=(outline,), width=length, openings=openings)
+    mesh = _mesh(result)
+    loops = [loop - base for loop in mesh_loops(mesh)]
+    low, _ = box(drawing.features)
+    unrolled = replace(drawing, features=place(drawing.features, Pose(0.0, -low)))
+    theta = np.arange(0.0, 360.0, _TABLE)
+    name, values = column
+    places = values(np.radians(theta)).tolist()
+    table = [(decimal(a), decimal(p)) for a, p in zip(theta.tolist(), places, strict=True)]
+    if design.drawing.runout and not design.blank.bore:
+        from gearcam.base.errors import InfeasibleError
+
+        what = "run-out is about a bore, and the cam has none"
+        raise InfeasibleError(what, where="drawing.runout_mm", nearest="blank.bore_diameter_mm")
+    return part_sheet(
+        part,
+        sheet_rows(result.facts, rows),
+        Heading(title=design.name, notes=design.drawing),
+        turning=Turning(zero=0.0, clockwise=result.cam.clockwise),
+        values=Values(title=("theta, deg", name), rows=table),
+        unrolled=Unrolled(loops=loops, drawing=unrolled, title=texts[0], note=texts[1]),
+    )
+
+
+def _mesh(result: GriddedCam) -> Mesh:
+    if result.carved:
+        return result.mesh
+    steps = min(result.solid_steps, _STEPS)
+    return result.mesh_of(steps, min(result.design.output.wall_points, _PLACES))
