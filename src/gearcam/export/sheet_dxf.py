@@ -29,9 +29,9 @@ from gearcam.sheets.sheet import (
     NARROW,
     PATTERNS,
     TEXT,
-    Dimension,
     Hatch,
     Sheet,
+    SheetDimension,
     Text,
     line_width,
 )
@@ -126,7 +126,7 @@ def _prepare(document: Document, sheet: Sheet, old: bool) -> None:
         made.set_dxf_attrib(name, value)
 
 
-def _dimension(space: Any, sheet: Sheet, one: Dimension, block: str) -> None:
+def _dimension(space: Any, sheet: Sheet, one: SheetDimension, block: str) -> None:
     """Add a dimension entity that shows a block."""
     base, *rest = (_place(point) for point in one.points)
     middle = one.text.place + 0.5 * one.text.height * sheet.unit * (-1 if one.text.upright else 1j)

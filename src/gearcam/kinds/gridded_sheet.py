@@ -17,8 +17,9 @@ from gearcam.parts.body import Opening, Part
 from gearcam.parts.shapes import Circle
 from gearcam.pictures.drawings import Drawing, box, place
 from gearcam.sheets.paper import Heading, Values, sheet_rows
-from gearcam.sheets.part import Turning, Unrolled, part_sheet
+from gearcam.sheets.part import part_sheet
 from gearcam.sheets.sections import mesh_loops
+from gearcam.sheets.wheel import Sense, Unrolled
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -92,7 +93,7 @@ def cam_sheet(
         part,
         sheet_rows(result.facts, rows),
         Heading(title=design.name, notes=design.drawing),
-        turning=Turning(zero=0.0, clockwise=result.cam.clockwise),
+        turning=Sense(zero=0.0, clockwise=result.cam.clockwise),
         values=Values(title=("theta, deg", name), rows=table),
         unrolled=Unrolled(loops=loops, drawing=unrolled, title=texts[0], note=texts[1]),
     )

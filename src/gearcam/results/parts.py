@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from gearcam.parts.body import Part
     from gearcam.pictures.drawings import Drawing
     from gearcam.sheets.paper import Heading, Values
-    from gearcam.sheets.part import Turning
     from gearcam.sheets.sheet import Sheet
+    from gearcam.sheets.wheel import Sense
 
 Measured = dict[str, Any]
 """Facts measured on files, by group."""
@@ -169,7 +169,7 @@ class PartsResult(Result):
             for number, part in enumerate(self.parts)
         )
 
-    def turning(self, number: int) -> Turning | None:  # noqa: ARG002
+    def turning(self, number: int) -> Sense | None:  # noqa: ARG002
         """Return how the part of a `number` from 0 turns, if its drawing shows it."""
         return None
 

@@ -25,8 +25,8 @@ from gearcam.sheets.dimensions import SHELF, along, arrow_head, leader, linear
 from gearcam.sheets.sheet import (
     CENTERLINE,
     Box,
-    Dimension,
     Hatch,
+    SheetDimension,
     Text,
     text_box,
     text_width,
@@ -107,7 +107,7 @@ class Board:
     features: list[Feature] = field(default_factory=list)
     hatches: list[Hatch] = field(default_factory=list)
     fills: list[Plane] = field(default_factory=list)
-    dimensions: list[Dimension] = field(default_factory=list)
+    dimensions: list[SheetDimension] = field(default_factory=list)
     texts: list[Text] = field(default_factory=list)
     rows: list[tuple[str, str]] = field(default_factory=list)
 
@@ -185,7 +185,7 @@ class Board:
             )
             self.add(made)
 
-    def add(self, dimension: Dimension) -> None:
+    def add(self, dimension: SheetDimension) -> None:
         """Draw a dimension."""
         self.dimensions.append(dimension)
         for line in dimension.lines:

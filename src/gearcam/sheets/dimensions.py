@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.numeric.arrays import Plane
-from gearcam.sheets.sheet import GAP, HEIGHT, Dimension, Text, text_width
+from gearcam.sheets.sheet import GAP, HEIGHT, SheetDimension, Text, text_width
 
 ARROW: Final = 3.0
 """Length of an arrow head, mm of paper."""
@@ -63,7 +63,7 @@ def linear(
     *,
     vertical: bool = False,
     beyond: float | None = None,
-) -> Dimension:
+) -> SheetDimension:
     """Return a dimension along x or y.
 
     Parameters
@@ -100,7 +100,7 @@ def linear(
     lines.append(level + np.array([start, end]) * way)
     turn = -1.0 if inwards else 1.0
     place = level + middle * way + GAP * unit * 1j * way
-    return Dimension(
+    return SheetDimension(
         kind="vertical" if vertical else "linear",
         value=high - low,
         points=(level + high * way, first, second),
@@ -115,7 +115,7 @@ def linear(
 
 def leader(
     center: complex, radius: float, angle: float, knee: float, label: str, kind: str, unit: float
-) -> Dimension:
+) -> SheetDimension:
     """Return a diameter, a radius or a label with a leader and its text on a shelf.
 
     Parameters
@@ -129,7 +129,7 @@ def leader(
     knee : float, mm
         Distance from the centre where the leader bends into the line under the text.
     label, kind : str
-        Its text, and of what kind it is (see `Dimension`).
+        Its text, and of what kind it is (see `SheetDimension`).
     unit : float
         Millimetres of the part in a millimetre of paper.
     """
@@ -137,7 +137,7 @@ def leader(
     edge, bend = center + radius * spoke, center + knee * spoke
     wide = text_width(label) * unit
     end = bend + (-wide if bend.real <= edge.real else wide)
-    return Dimension(
+    return SheetDimension(
         kind=kind,
         value=2.0 * radius if kind == "diameter" else radius,
         points=(center - radius * spoke if kind == "diameter" else center, edge),

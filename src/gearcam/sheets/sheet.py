@@ -139,7 +139,7 @@ class Text(ShortRepr):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Dimension(ShortRepr):
+class SheetDimension(ShortRepr):
     """A dimension, or a text with a leader.
 
     Parameters
@@ -245,7 +245,7 @@ class Sheet(ShortRepr):
         Cut metal.
     fills : tuple of (n,) complex array, mm
         Black areas, such as those of symbols.
-    dimensions : tuple of Dimension
+    dimensions : tuple of SheetDimension
         Dimensions and texts with leaders.
     texts : tuple of Text
         All other texts.
@@ -262,7 +262,7 @@ class Sheet(ShortRepr):
     features: tuple[Feature, ...]
     hatches: tuple[Hatch, ...] = ()
     fills: tuple[Plane, ...] = ()
-    dimensions: tuple[Dimension, ...] = ()
+    dimensions: tuple[SheetDimension, ...] = ()
     texts: tuple[Text, ...] = ()
     rows: tuple[tuple[str, str], ...] = ()
 

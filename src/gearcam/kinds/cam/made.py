@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from gearcam.parts.body import Part
     from gearcam.parts.checks import CheckedParts
     from gearcam.pictures.drawings import Drawing, Path
-    from gearcam.sheets.part import Turning
+    from gearcam.sheets.wheel import Sense
 
 _MOST_STEPS: Final = 1e6
 """Largest number of steps of a table."""
@@ -241,9 +241,9 @@ class MadeCam(LoadedCam, PartsResult):
             sought=not self.drafted,
         )
 
-    def turning(self, number: int) -> Turning | None:
+    def turning(self, number: int) -> Sense | None:
         """Return how the part of a `number` turns (see `PartsResult.turning`)."""
-        from gearcam.sheets.part import Turning
+        from gearcam.sheets.wheel import Sense
 
         wall = self.cam.walls[min(number, len(self.cam.walls) - 1)]
         if not self.carrier.around:
@@ -253,7 +253,7 @@ class MadeCam(LoadedCam, PartsResult):
             curve = replace(wall.curve, inset=0.0)
             lift = self.program.derivatives(np.zeros(1), 1)
             zero = float(np.angle(curve.trace(np.zeros(1), *lift)[0][0]))
-        return Turning(zero=zero, clockwise=wall.hand < 0)
+        return Sense(zero=zero, clockwise=wall.hand < 0)
 
     def rows_of(self, number: int) -> Sequence[str]:
         """Return the names of the facts in the table of a part's drawing, by its `number`."""

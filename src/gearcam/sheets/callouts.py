@@ -1,0 +1,163 @@
+"""What stands on leaders in the views of a part: radii, holes, marks, tolerance frames, arrows.
+
+Holes of one size at equal angles on one circle are a *pattern*, with one diameter, the circle and
+the direction of the first; other holes have a letter, and their positions in the table.
+
+Depends on parts, drawings and sheets.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import Final
+
+import numpy as np
+
+from gearcam.base.numerals import decimal
+from gearcam.parts.body import Part
+from gearcam.parts.shapes import Circle, Loop
+from gearcam.pictures.drawings import SLOT
+from gearcam.sheets.board import AROUND, OVERHANG, Board, direction
+from gearcam.sheets.board import label_of as label
+from gearcam.sheets.paper import Heading
+from gearcam.sheets.sheet import CENTERLINE, DIMENSION, fine
+from gearcam.sheets.symbols import frame
+from gearcam.sheets.wheel import SAME, Sense, Wheel, holes_of, thread
+
+_NEAR: Final = 0.1
+"""Angle to both sides of theta = 0 at which the outline is looked at, rad."""
+
+
+def turning_arrow(board: Board, wheel: Wheel, turning: Sense) -> None:
+    """Draw where the angle of a cam is 0, and an arrow for its sense."""
+    ahead = wheel.points * cmath.rect(1.0, -turning.zero)
+    reach = float(ahead.real[np.abs(np.angle(ahead)) < _NEAR].max())
+    end = cmath.rect(reach + 8.0 * board.unit, turning.zero)
+    board.line(CENTERLINE, 0j, end)
+    if not board.label(end, "theta = 0"):
+        board.rows.append(("theta = 0 at", f"{decimal(math.degrees(turning.zero))} deg"))
+    radius = 0.5 * (wheel.radius + float(np.abs(wheel.points).min()))
+    sense = -1.0 if turning.clockwise else 1.0
+    angles = turning.zero + sense * np.linspace(0.3, 1.2, 19)
+    arc = radius * np.exp(1j * angles)
+    board.line(DIMENSION, *arc.tolist())
+    tip = complex(arc[-1])
+    board.arrow(tip, 1j * sense * tip / abs(tip))
+    if not board.label(complex(arc[9]), turning.words):
+        board.rows.append(("rotation", turning.words))
+
+
+def frames(board: Board, wheel: Wheel, heading: Heading, left: float) -> None:
+    """Draw the frames of run-out and profile tolerance."""
+    notes, part = heading.notes, wheel.part
+    if notes.profile_tolerance:
+        spot = complex(wheel.points[np.argmax((wheel.points * cmath.rect(1.0, -0.7)).real)])
+        frame(board, spot, "profile", fine(notes.profile_tolerance))
+    if notes.runout and wheel.turns and wheel.bore:
+        back = left + (part.hub.back if part.hub else 0.0)
+        top = max(float(ends[-1]) for ends, _ in wheel.section.slabs if len(ends))
+        # of an outline that is not round, that of the face
+        spot = complex(back + 0.5 * part.width, top) if wheel.round else back + 0.95j * top
+        frame(board, spot, "runout", fine(notes.runout), "A")
+
+
+def callouts(board: Board, wheel: Wheel, side: float) -> None:
+    """Draw the leaders into the front view, those with fixed places first."""
+    part = wheel.part
+    _holes(board, part)
+    if wheel.turns and (part.inner or not wheel.round):
+        _radii(board, wheel)
+    for opening in part.openings:
+        if opening.kind == SLOT and isinstance(opening.shape, Loop):
+            _slot(board, opening.shape)
+    if part.screw is not None:
+        edge = complex(side - part.ends[0] + part.screw.middle, -part.screw.edge.reach)
+        board.label(edge, thread(part.screw))
+    for mark in part.marks:
+        words = f"mark {{}}, {decimal(mark.depth)} deep"
+        if not board.callout(mark.edge, words):
+            board.rows.append(("mark", label(mark.edge, words)))
+
+
+def _radii(board: Board, wheel: Wheel) -> None:
+    """Draw the largest and the smallest radius of the teeth from the axis."""
+    reach = np.abs(wheel.toothed)
+    for radius, word in ((float(reach.max()), "max"), (float(reach.min()), "min")):
+        # the first of the points on an arc about the axis, not one that rounding chooses
+        point = complex(wheel.toothed[np.argmax(np.abs(reach - radius) < SAME)])
+        circle, words = Circle(center=0j, diameter=2.0 * radius), f"{{}} {word}"
+        # a leader without direction to the axis
+        if not board.callout(circle, words, kind="radius", angles=direction(point)) and (
+            not board.label(point, label(circle, words, "radius"))
+        ):
+            board.rows.append((f"{word}. radius from axis", decimal(radius)))
+
+
+def _holes(board: Board, part: Part) -> None:
+    """Draw the centre lines of all holes, then their sizes, large ones first."""
+    groups: dict[tuple[int, int], list[Circle]] = {}
+    for circle in holes_of(part):
+        key = round(circle.diameter / SAME), round(abs(circle.center) / SAME)
+        groups.setdefault(key, []).append(circle)
+    patterns = [group for group in groups.values() if _even(group)]
+    singles = [one for group in groups.values() if not _even(group) for one in group]
+    for group in patterns:
+        _ring(board, group)
+    names = {id(one): f"H{k} {{}}" for k, one in enumerate(singles, start=1)}
+    for hole in singles:
+        board.centre(hole)
+    for hole in sorted(singles, key=lambda one: -one.diameter):
+        board.callout(hole, names[id(hole)])
+    for group in patterns:
+        _pattern(board, group)
+    for hole in singles:
+        place = f"X {decimal(hole.center.real)}  Y {decimal(hole.center.imag)}"
+        board.rows.append((label(hole, names[id(hole)]), place))
+
+
+def _even(circles: list[Circle]) -> bool:
+    """Whether holes on one circle are at equal angles."""
+    if len(circles) < 2:
+        return False
+    angles = np.sort([cmath.phase(circle.center) for circle in circles])
+    steps = np.diff(np.append(angles, angles[0] + 2.0 * math.pi))
+    return bool((np.abs(steps - 2.0 * math.pi / len(circles)) < SAME).all())
+
+
+def _ring(board: Board, circles: list[Circle]) -> None:
+    """Draw the centre lines of a pattern: its circle, and a radial line through each hole."""
+    away = abs(circles[0].center)
+    board.draw(CENTERLINE, Circle(center=0j, diameter=2.0 * away))
+    arm = 0.5 * circles[0].diameter + 0.5 * OVERHANG * board.unit
+    for circle in circles:
+        spoke = arm / away * circle.center
+        board.line(CENTERLINE, circle.center - spoke, circle.center + spoke)
+
+
+def _pattern(board: Board, circles: list[Circle]) -> None:
+    one, count = circles[0], len(circles)
+    first, words = cmath.phase(one.center), f"{count} x {{}}"
+    board.callout(one, words, angles=AROUND)
+    # the arrow points at the circle between two holes
+    between = first + math.pi / count * np.array([1.0, 3.0, -1.0, -3.0, 0.5, -0.5, 1.5, -1.5])
+    ring = Circle(center=0j, diameter=2.0 * abs(one.center))
+    board.callout(ring, angles=between)
+    at = f"on {label(ring)}, at {decimal(math.degrees(first))} deg"
+    board.rows.append((label(one, words), at))
+
+
+def _slot(board: Board, shape: Loop) -> None:
+    """SheetDimension a slot along an arc about the axis: width, mean radius and end angles."""
+    corners = shape.points
+    half = len(corners) // 2
+    radii = np.abs(corners[[0, half]])
+    middle, width = float(radii.mean()), float(radii[0] - radii[1])
+    sweep = float(np.angle(corners[1:half] / corners[: half - 1]).sum())
+    first = math.degrees(cmath.phase(complex(corners[0])))
+    end = Circle(center=complex(corners[[half - 1, half]].mean()), diameter=width)
+    if not board.callout(end, "slot {}", kind="radius"):
+        board.rows.append(("slot, width", decimal(width)))
+    board.rows.append(("slot, mid radius", decimal(middle)))
+    last = first + math.degrees(sweep)
+    board.rows.append(("slot, ends at", f"{decimal(first)}, {decimal(last)} deg"))

@@ -1,0 +1,200 @@
+"""A part with what its sheet needs: its true points, its bore, its axis, its section.
+
+Depends on parts, drawings and sheets.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+
+from gearcam.base.numerals import decimal
+from gearcam.numeric.arrays import Plane, bounds
+from gearcam.numeric.pose import Pose
+from gearcam.parts.body import Bevel, Opening, Part, ScrewHole
+from gearcam.parts.shapes import Circle, Loop, true_points
+from gearcam.pictures.drawings import BORE, HOLE, Drawing, placed
+from gearcam.sheets.sections import Section, crossings
+
+SAME: Final = 1e-6
+"""Sizes, mm, and angles, rad, that differ by less are equal."""
+
+_PLANES: Final = 10
+"""Places of the section that are tried, with both ends."""
+
+UP: Final = 0.5 * math.pi
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Sense:
+    """How a cam turns: where its angle is 0, rad, and the sense; None of what slides."""
+
+    zero: float
+    clockwise: bool
+
+    @property
+    def words(self) -> str:
+        """The sense of turning in words."""
+        return f"turns {'' if self.clockwise else 'counter-'}clockwise"
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Unrolled:
+    """What the sheet of a cam in space shows beside its blank.
+
+    Parameters
+    ----------
+    loops : sequence of (n,) complex array, mm
+        What the section cuts of its solid: z and y, with z = 0 at the back.
+    drawing : Drawing
+        Its outside unrolled, the lower left corner at 0.
+    title : str
+        What is written above that.
+    note : str
+        Where its walls are given.
+    """
+
+    loops: Sequence[Plane]
+    drawing: Drawing
+    title: str
+    note: str
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Wheel:
+    """A part with the data of its sheet; points are on the true curves.
+
+    `unrolled` is what is shown of a cam in space, of which the part is the blank.
+    """
+
+    part: Part
+    unrolled: Unrolled | None = None
+
+    @cached_property
+    def points(self) -> Plane:
+        """Points of the outline."""
+        return true_points(self.part.contours[-1:])
+
+    @cached_property
+    def toothed(self) -> Plane:
+        """Points of the teeth: of a ring those of its inner edge."""
+        return true_points(self.part.inner[-1:]) if self.part.inner else self.points
+
+    @cached_property
+    def low(self) -> complex:
+        """Lower left corner of the outline, mm."""
+        return bounds(self.points)[0]
+
+    @cached_property
+    def high(self) -> complex:
+        """Upper right corner of the outline, mm."""
+        return bounds(self.points)[1]
+
+    @cached_property
+    def round(self) -> bool:
+        """Whether the outline is a circle around the axis, as for most rings and groove cams."""
+        return float(np.ptp(np.abs(self.points))) < SAME
+
+    @cached_property
+    def turns(self) -> bool:
+        """Whether the axis lies within the outline; racks have no axis."""
+        corners = self.part.contours[-1].polyline(self.part.tolerance)
+        if not (self.part.turns and corners.all()):
+            return False
+        turn = float(np.angle(np.roll(corners, -1) / corners).sum())
+        return abs(turn) > math.pi
+
+    @property
+    def placed(self) -> bool:
+        """Whether hole positions refer to an origin that is not an axis."""
+        return not self.turns and any(one.kind == HOLE for one in self.part.openings)
+
+    @cached_property
+    def bore(self) -> Opening | None:
+        """The bore."""
+        return next((one for one in self.part.openings if one.kind == BORE), None)
+
+    @property
+    def fits(self) -> Mapping[str, Any]:
+        """Sizes of the bore that have tolerance classes."""
+        return self.bore.fits if self.bore else {}
+
+    @property
+    def keyed(self) -> Loop | None:
+        """The bore if it is not round."""
+        shape = self.bore.shape if self.bore else None
+        return shape if isinstance(shape, Loop) else None
+
+    @property
+    def radius(self) -> float:
+        """Radius of the bore, with a keyway or a flat that of the arc, mm; 0 without a bore."""
+        if self.keyed is not None:
+            return float(abs(self.keyed.points[0]))
+        return self.bore.shape.reach if self.bore else 0.0
+
+    @property
+    def plane(self) -> float:
+        """Where the section is, x, mm; without axis and holes where it cuts most metal."""
+        if self.turns:
+            return 0.0
+        even = np.linspace(self.low.real, self.high.real, _PLANES)[1:-1]
+        tried = [one.center.real for one in holes_of(self.part)][:1] or even.tolist()
+        edge, tolerance = self.part.contours[-1], self.part.tolerance
+
+        def metal(x: float) -> float:
+            return float(np.diff(crossings(edge, x, tolerance))[::2].sum())
+
+        return max(tried, key=metal)
+
+    @cached_property
+    def section(self) -> Section:
+        """What the plane cuts, a keyway or flat turned into it."""
+        part = self.part
+        turned = {}
+        if self.keyed is not None and self.bore is not None:
+            middle = cmath.phase(complex(floor_of(self.keyed).mean()))
+            shape = placed(self.keyed, Pose(UP - middle))
+            turned[id(self.bore)] = replace(self.bore, shape=shape)
+        layers = [
+            replace(one, openings=tuple(turned.get(id(o), o) for o in one.openings))
+            for one in part.layers
+        ]
+        # chamfers are told in words; a set screw is turned into the plane
+        pockets = [one for one in part.pockets if not isinstance(one, Bevel | ScrewHole)]
+        return Section(layers=layers, pockets=pockets, x=self.plane, tolerance=part.tolerance)
+
+
+def holes_of(part: Part) -> list[Circle]:
+    """Return the round holes of a part."""
+    shapes = [one.shape for one in part.openings if one.kind == HOLE]
+    return [one for one in shapes if isinstance(one, Circle)]
+
+
+BORES: Final = {3: "flat", 4: "flats", 5: "keyway"}
+"""What a bore that is not round has, by the corners of its loop."""
+
+
+def floor_of(keyed: Loop) -> Plane:
+    """Return both ends of the floor of a keyway, or of the first flat."""
+    return keyed.points[{3: [0, -1], 4: [0, 1], 5: [-2, -1]}[len(keyed.points)]]
+
+
+def fitted(words: str, fit: Any) -> str:
+    """Return the text of a size with its tolerance class and limits, if it has any."""
+    if fit is None:
+        return words
+    limits = f"±{decimal(fit.upper)}"
+    if fit.lower != -fit.upper:
+        limits = "/".join(f"{'+' * (one > 0)}{decimal(one)}" for one in (fit.upper, fit.lower))
+    return f"{words} {fit.tolerance_class} ({limits})"
+
+
+def thread(screw: ScrewHole) -> str:
+    """Return the thread of a set screw in words."""
+    return f"set screw M{decimal(screw.size)}"
