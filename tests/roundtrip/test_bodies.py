@@ -27,8 +27,8 @@ from gearcam.parts.mass import mass_properties, volume_moments
 from gearcam.parts.shapes import Circle
 from gearcam.parts.solids import solid, volume_error
 from gearcam.pictures.drawings import cut_drawing, wheel_drawing
-from gearcam.sheets.wheel import wheel_sheet
 from helpers_contour import disc_contour, gear_contour, layers
+from helpers_sheets import sheet_of
 
 TEETH = gear_contour(30, 2.0)
 ROUND = disc_contour(90.0)
@@ -119,10 +119,10 @@ def test_a_cutter_stays_in_the_waste_of_a_ring() -> None:
 
 def test_a_ring_has_a_sheet() -> None:
     part = ring(2)
-    made = wheel_sheet(part, {}, "ring")
+    made = sheet_of(part)
     kinds = [feature.kind for feature in made.features]
     assert kinds.count("INNER") == 1
-    assert kinds.count("HIDDEN") == 4
+    assert len(made.hatches) == 1
     assert b'class="inner" stroke-width="0.5"' in sheet_svg(made)
     assert b"INNER" in sheet_dxf(made, STYLE)
 

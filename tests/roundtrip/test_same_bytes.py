@@ -15,16 +15,20 @@ from gearcam.export.dxf import DxfStyle, dxf_bytes
 from gearcam.export.sheet_dxf import sheet_dxf
 from gearcam.export.sheet_svg import sheet_svg
 from gearcam.parts.body import Hub, Part
-from gearcam.sheets import wheel_sheet
+from gearcam.export.sheet_pdf import sheet_pdf
+from gearcam.sheets.paper import Heading
+from gearcam.sheets.part import part_sheet
+from gearcam.sheets.spec import DrawingSpec
 from helpers_contour import bore, square_contour
 style = DxfStyle(tolerance=1e-3)
 part = Part(name="p", contours=(square_contour(9.0),), openings=bore(2.0), width=1.0)
 hub = Hub(diameter=9.0, front=2.0)
 wide = Part(name="p", contours=(square_contour(90.0),), width=1.0, hub=hub)
-sheets = [wheel_sheet(wide, {"a": "1"}, "t") for _ in range(2)]
+heading = Heading(title="t", notes=DrawingSpec())
+sheets = [part_sheet(wide, {"a": "1"}, heading) for _ in range(2)]
 files = [
     dxf_bytes(wheel_drawing(part), style),
-    *(sheet_svg(sheet) + sheet_dxf(sheet, style) for sheet in sheets),
+    *(sheet_svg(one) + sheet_dxf(one, style) + sheet_pdf([one], "t") for one in sheets),
 ]
 found = [hashlib.sha256(file).hexdigest() for file in files]
 print(json.dumps([found, list({"one", "two", "three", "four", "five"})]))

@@ -17,7 +17,7 @@ import numpy as np
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.numeric.arrays import Plane, as_pairs
-from gearcam.sheets.sheet import CAPITAL, RULE, Box, Sheet, Stroke, Text
+from gearcam.sheets.sheet import CAPITAL, RULE, Box, DrawnLine, Sheet, Text
 
 POINT: Final = 72.0 / 25.4
 """Points in a millimetre."""
@@ -61,11 +61,11 @@ def sheet_pdf(sheets: Iterable[Sheet], title: str, window: Box | None = None) ->
             low, size = window[0], window[1] - window[0]
             path = canvas.beginPath()
             path.rect(low.real, low.imag, size.real, size.imag)
-            canvas.clipPath(path, stroke=0)
-        strokes = list(sheet.strokes)
-        _strokes(canvas, [one for one in strokes if one.kind != RULE])
+            canvas.clipPath(path, 0)
+        drawn_lines = list(sheet.drawn_lines)
+        _drawn(canvas, [one for one in drawn_lines if one.kind != RULE])
         canvas.restoreState()
-        _strokes(canvas, [one for one in strokes if one.kind == RULE])
+        _drawn(canvas, [one for one in drawn_lines if one.kind == RULE])
         for black in sheet.blacks:
             _path(canvas, black, closed=True, fill=True)
         for text in sheet.words:
@@ -75,11 +75,11 @@ def sheet_pdf(sheets: Iterable[Sheet], title: str, window: Box | None = None) ->
     return stream.getvalue()
 
 
-def _strokes(canvas: Any, strokes: Iterable[Stroke]) -> None:
-    for stroke in strokes:
-        canvas.setLineWidth(stroke.width)
-        canvas.setDash(stroke.dashes)
-        _path(canvas, stroke.points, closed=stroke.closed, fill=False)
+def _drawn(canvas: Any, drawn_lines: Iterable[DrawnLine]) -> None:
+    for line in drawn_lines:
+        canvas.setLineWidth(line.width)
+        canvas.setDash(line.dashes)
+        _path(canvas, line.points, closed=line.closed, fill=False)
     canvas.setDash([])
 
 
@@ -91,7 +91,7 @@ def _path(canvas: Any, points: Plane, *, closed: bool, fill: bool) -> None:
         path.lineTo(*point)
     if closed:
         path.close()
-    canvas.drawPath(path, stroke=int(not fill), fill=int(fill))
+    canvas.drawPath(path, int(not fill), int(fill))
 
 
 def _text(canvas: Any, sheet: Sheet, text: Text) -> None:

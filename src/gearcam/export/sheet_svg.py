@@ -16,7 +16,7 @@ import numpy as np
 from gearcam.base.numerals import decimal
 from gearcam.numeric.arrays import Plane, as_pairs
 from gearcam.pictures.markup import svg_document
-from gearcam.sheets.sheet import CAPITAL, Sheet, Stroke, Text
+from gearcam.sheets.sheet import CAPITAL, DrawnLine, Sheet, Text
 
 INK: Final = "#000000"
 
@@ -28,7 +28,7 @@ def sheet_svg(sheet: Sheet) -> bytes:
     lines = [
         f'<rect width="{wide}" height="{tall}" fill="#ffffff"/>',
         f'<g fill="none" stroke="{INK}" stroke-linejoin="round">',
-        *(_stroke(sheet, one) for one in sheet.strokes),
+        *(_stroke(sheet, one) for one in sheet.drawn_lines),
         "</g>",
         f'<g fill="{INK}" stroke="none">',
         *(f'<path class="arrow" d="{_data(sheet, black)}Z"/>' for black in sheet.blacks),
@@ -40,7 +40,7 @@ def sheet_svg(sheet: Sheet) -> bytes:
     return svg_document(size, sheet.title, lines)
 
 
-def _stroke(sheet: Sheet, stroke: Stroke) -> str:
+def _stroke(sheet: Sheet, stroke: DrawnLine) -> str:
     style = f"class={quoteattr(stroke.layer.lower().replace('_', '-'))}"
     style += f' stroke-width="{stroke.width}"'
     if stroke.dashes:

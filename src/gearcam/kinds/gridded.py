@@ -236,9 +236,9 @@ class GriddedCam(LoadedCam, Result):
             return replace(made, bevels=tuple(made_bevels))
 
     @cached_property
-    @abstractmethod
     def sheets(self) -> tuple[Sheet, ...]:
         """The workshop drawing."""
+        return self.kind.sheets(self)
 
     @property
     def turned_bore(self) -> float:

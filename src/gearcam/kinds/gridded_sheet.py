@@ -65,6 +65,11 @@ def cam_sheet(
     Returns
     -------
     Sheet
+
+    Raises
+    ------
+    InfeasibleError
+        If it does not fit on a sheet, or run-out is given without a bore.
     """
     design, (_, base, length) = result.design, result.core_size
     radius = max(result.rims)

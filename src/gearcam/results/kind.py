@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from gearcam.designs.design import Design
     from gearcam.pictures.charts import Chart
     from gearcam.pictures.scenes import Scene
+    from gearcam.sheets.sheet import Sheet
 
 Files = dict[str, bytes]
 """Contents by file name."""
@@ -52,6 +53,8 @@ class Kind(DesignKind):
         ``scene(result, places)`` returns the moving parts at so many positions of the driver.
     advice : callable
         ``advice()`` returns how remedies are searched for (see `gearcam.results.advice.Advice`).
+    sheets : callable
+        ``sheets(result)`` returns the workshop drawings of kinds that are not made of plates.
     ladders : mapping of str to callable
         Stages at increasing resolution (see `gearcam.results.ladders`).
     public : mapping of str to type
@@ -64,6 +67,7 @@ class Kind(DesignKind):
     files: Mapping[str, FileMaker] = field(default_factory=dict)
     charts: Mapping[str, ChartMaker] = field(default_factory=dict)
     scene: Callable[[Any, int], Scene | None] = lambda *_: None
+    sheets: Callable[[Any], tuple[Sheet, ...]] = lambda _: ()
     advice: Callable[[], Any] = _PLAIN_ADVICE
     ladders: Mapping[str, Callable[[Any], Any]] = field(default_factory=dict)
     public: Mapping[str, type] = field(default_factory=dict)

@@ -66,9 +66,9 @@ SIGNS: Final = {"diameter": "Ø", "radius": "R"}
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Measure:
-    """A linear dimension that gets a level: its points, complex, mm, and its text.
+    """A linear dimension that gets a level: its points `first` and `second`, complex, mm.
 
-    Without a text it is the number; an `aside` one follows from others and is in parentheses.
+    Without a `text` it says the number; an `aside` one follows from others, in parentheses.
     """
 
     first: complex
@@ -129,7 +129,7 @@ class Board:
             self._ink(np.append(points, points[:1]) if closed else points)
 
     def line(self, layer: str, *points: complex, closed: bool = False) -> None:
-        """Draw straight lines on a `layer` from point to point, mm of the part."""
+        """Draw straight lines on a `layer` between `points`, mm of the part, back if `closed`."""
         self.draw(layer, Path(points=np.array(points, dtype=np.complex128), closed=closed))
 
     def hatch(self, loops: Sequence[Plane]) -> None:
@@ -141,7 +141,7 @@ class Board:
                 self._ink(line)
 
     def arrow(self, tip: complex, way: complex, size: float = 1.0) -> None:
-        """Draw an arrow head at `tip`, mm, in the direction of the unit vector `way`."""
+        """Draw an arrow head of a `size`, 1 is usual, at `tip`, mm, along the unit vector `way`."""
         self.fills.append(arrow_head(tip, way, size * self.unit))
 
     def centre(self, circle: Circle) -> None:
@@ -227,7 +227,7 @@ class Board:
         return found is not None
 
     def label(self, point: complex, text: str) -> bool:
-        """Write a `text` with a leader to a `point`, mm; False if there is no space for it."""
+        """Return whether a `text` with a leader to a `point`, mm, has space; then it is drawn."""
         return self.callout(Circle(center=point, diameter=0.02 * self.unit), text, kind="label")
 
     def place(

@@ -30,7 +30,7 @@ _NEAR: Final = 0.1
 
 
 def turning_arrow(board: Board, wheel: Wheel, turning: Sense) -> None:
-    """Draw where the angle of a cam is 0, and an arrow for its sense."""
+    """Draw on a `board` where the angle of a cam, a `wheel`, is 0, and how it is `turning`."""
     ahead = wheel.points * cmath.rect(1.0, -turning.zero)
     reach = float(ahead.real[np.abs(np.angle(ahead)) < _NEAR].max())
     end = cmath.rect(reach + 8.0 * board.unit, turning.zero)
@@ -49,7 +49,7 @@ def turning_arrow(board: Board, wheel: Wheel, turning: Sense) -> None:
 
 
 def frames(board: Board, wheel: Wheel, heading: Heading, left: float) -> None:
-    """Draw the frames of run-out and profile tolerance."""
+    """Draw on a `board` the tolerance frames of a `heading` at a `wheel`, its section at `left`."""
     notes, part = heading.notes, wheel.part
     if notes.profile_tolerance:
         spot = complex(wheel.points[np.argmax((wheel.points * cmath.rect(1.0, -0.7)).real)])
@@ -63,7 +63,7 @@ def frames(board: Board, wheel: Wheel, heading: Heading, left: float) -> None:
 
 
 def callouts(board: Board, wheel: Wheel, side: float) -> None:
-    """Draw the leaders into the front view, those with fixed places first."""
+    """Draw on a `board` the leaders of a `wheel`, whose section begins at x = `side`, mm."""
     part = wheel.part
     _holes(board, part)
     if wheel.turns and (part.inner or not wheel.round):

@@ -11,6 +11,7 @@ Depends on drawings, facts and sheets.
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -262,7 +263,9 @@ def finish(
     -------
     Sheet
     """
-    size, rows = PAPERS[board.paper], (*facts.items(), *board.rows)
+    size, more = PAPERS[board.paper], Counter(board.rows)
+    alike = ((f"{n} x {label}" if n > 1 else label, text) for (label, text), n in more.items())
+    rows = (*facts.items(), *alike)
     left, right, top = BINDING, size[0] - MARGIN, size[1] - MARGIN
     frame = complex(left, MARGIN), complex(right, MARGIN), complex(right, top), complex(left, top)
     _chain(board, FRAME, *frame, closed=True)

@@ -40,9 +40,9 @@ from gearcam.sheets.wheel import (
 )
 
 LEFT: Final = 24.0
-BETWEEN: Final = 36.0
-RIGHT: Final = 28.0
-ABOVE: Final = 16.0
+BETWEEN: Final = 34.0
+RIGHT: Final = 26.0
+ABOVE: Final = 14.0
 BELOW: Final = 5.0
 BORE_ROOM: Final = 44.0
 UNROLLED: Final = 36.0

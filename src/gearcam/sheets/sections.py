@@ -9,23 +9,31 @@ Depends on parts and numeric, numpy only.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from typing import Final
 
 import numpy as np
 
 from gearcam.numeric.arrays import Array, Mask, Plane
 from gearcam.numeric.mesh import Mesh
 from gearcam.parts.body import Edge, Layer
+from gearcam.parts.shapes import Circle
+
+_NONE: Final = np.empty(0)
 
 Line = tuple[complex, complex]
 """Two points of a section, z and y, mm."""
 
 
 def crossings(edge: Edge, x: float, tolerance: float) -> Array:
-    """Return the places y at which an edge crosses the plane at `x`, in order, mm."""
+    """Return where an `edge`, with chords within a `tolerance`, crosses the plane at `x`: y, mm."""
+    if isinstance(edge, Circle):
+        square = 0.25 * edge.diameter**2 - (x - edge.center.real) ** 2
+        return edge.center.imag + math.sqrt(square) * np.array([-1.0, 1.0]) if square > 0 else _NONE
     points = edge.polyline(tolerance)
     ends = np.roll(points, -1)
     over = (points.real > x) != (ends.real > x)
@@ -65,7 +73,7 @@ class Section:
             for one in (*layers, *pockets)
             for edge in one.edges
         }
-        ends = np.unique(np.concatenate([*cuts.values(), np.empty(0)]))
+        ends = np.unique(np.concatenate([*cuts.values(), _NONE]))
         places = 0.5 * (ends[1:] + ends[:-1])
 
         def within(layer: Layer) -> Mask:
@@ -81,8 +89,8 @@ class Section:
             metal &= ~within(pocket)
         changed = np.flatnonzero(np.diff(np.concatenate([[False], metal, [False]]).astype(int)))
         behind = [points.imag[points.real >= self.x] for points in self._outlines(layers)]
-        seen = np.concatenate([*behind, np.empty(0)])
-        extent = np.array([seen.min(), seen.max()]) if len(seen) else np.empty(0)
+        seen = np.concatenate([*behind, _NONE])
+        extent = np.array([seen.min(), seen.max()]) if len(seen) else _NONE
         return ends[changed], extent
 
     def _outlines(self, layers: Sequence[Layer]) -> Iterator[Plane]:
@@ -104,7 +112,7 @@ class Section:
         for (low, high), (ends, extent) in zip(pairwise(self.heights), self.slabs, strict=True):
             for y in np.union1d(ends, extent).tolist():
                 yield low + 1j * y, high + 1j * y
-        nothing = np.empty(0), np.empty(0)
+        nothing = _NONE, _NONE
         slabs = [nothing, *self.slabs, nothing]
         for height, ((ends, extent), (others, over)) in zip(
             self.heights, pairwise(slabs), strict=True

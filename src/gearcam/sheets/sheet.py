@@ -193,7 +193,7 @@ class Hatch(ShortRepr):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Stroke(ShortRepr):
+class DrawnLine(ShortRepr):
     """A chain of `points`, complex, mm of paper, on a `layer`; `closed` if it is."""
 
     layer: str
@@ -276,17 +276,17 @@ class Sheet(ShortRepr):
         return (points - self.corner) * self.scale
 
     @property
-    def strokes(self) -> Iterator[Stroke]:
+    def drawn_lines(self) -> Iterator[DrawnLine]:
         """All its lines, on paper."""
         for feature in self.features:
             for points, closed in chains(feature.shape, SAGITTA * self.unit):
-                yield Stroke(layer=feature.layer, points=self.on_paper(points), closed=closed)
+                yield DrawnLine(layer=feature.layer, points=self.on_paper(points), closed=closed)
         for hatch in self.hatches:
             for line in hatch.lines(HATCHED * self.unit):
-                yield Stroke(layer=HATCH, points=self.on_paper(line))
+                yield DrawnLine(layer=HATCH, points=self.on_paper(line))
         for one in self.dimensions:
             for line in one.lines:
-                yield Stroke(layer=DIMENSION, points=self.on_paper(line))
+                yield DrawnLine(layer=DIMENSION, points=self.on_paper(line))
 
     @property
     def blacks(self) -> Iterator[Plane]:

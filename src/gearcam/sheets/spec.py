@@ -25,17 +25,9 @@ def _text(*, example: str, doc: str, both: bool = False) -> Any:
     return param(TEXT, default=None, example=example, doc=doc, both=both)
 
 
-def _number(*, both: bool = False) -> Any:
-    doc = "identification number; one for several parts gets -1, -2; file names if left out"
-    return _text(example="G-1024", doc=doc, both=both)
-
-
-def _material(*, both: bool = False) -> Any:
-    return _text(example="C45E", doc="material, as it is ordered", both=both)
-
-
-def _treatment(*, both: bool = False) -> Any:
-    return _text(example="hardened, 50 to 54 HRC", doc="heat treatment", both=both)
+_NUMBER: Final = "identification number; one for several parts gets -1, -2; file names if left out"
+_MATERIAL: Final = "material, as it is ordered"
+_TREATMENT: Final = "heat treatment"
 
 
 def _tolerance(*, example: float, doc: str) -> Any:
@@ -97,9 +89,9 @@ class DrawingSpec(DrawingNotes):
     DrawingSpec(general_tolerances='ISO 2768-mK', material='C45E')
     """
 
-    part_number: str | None = _number()
-    material: str | None = _material()
-    heat_treatment: str | None = _treatment()
+    part_number: str | None = _text(example="G-1024", doc=_NUMBER)
+    material: str | None = _text(example="C45E", doc=_MATERIAL)
+    heat_treatment: str | None = _text(example="hardened, 50 to 54 HRC", doc=_TREATMENT)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -113,9 +105,11 @@ class PairDrawingSpec(DrawingNotes):
     PairDrawingSpec(material=('C45E', 'POM'))
     """
 
-    part_number: tuple[str, str] | None = _number(both=True)
-    material: tuple[str, str] | None = _material(both=True)
-    heat_treatment: tuple[str, str] | None = _treatment(both=True)
+    part_number: tuple[str, str] | None = _text(example="G-1024", doc=_NUMBER, both=True)
+    material: tuple[str, str] | None = _text(example="C45E", doc=_MATERIAL, both=True)
+    heat_treatment: tuple[str, str] | None = _text(
+        example="hardened, 50 to 54 HRC", doc=_TREATMENT, both=True
+    )
 
 
 def _is_date(text: str) -> bool:

@@ -20,7 +20,7 @@ FRAME: Final = 2.0 * HEIGHT
 
 
 def section_line(board: Board, x: float, low: float, high: float) -> None:
-    """Draw the line of the section A-A at `x` through a view from `low` to `high`, mm."""
+    """Draw on a `board` the line of the section A-A at `x` through a view, `low` to `high`, mm."""
     unit = board.unit
     board.line(CENTERLINE, complex(x, low - 2.0 * unit), complex(x, high + 2.0 * unit))
     for end, way in ((low, -1.0), (high, 1.0)):
@@ -50,7 +50,7 @@ def _box(board: Board, low: complex, *cells: str) -> None:
 
 
 def datum(board: Board, point: complex, way: complex) -> None:
-    """Draw the symbol of the datum A at a `point`, mm, on the side of the unit vector `way`."""
+    """Draw on a `board` the datum A at a `point`, mm, on the side of the unit vector `way`."""
     unit = board.unit
     side, back = 1.5j * way * unit, point + 2.6 * way * unit
     board.fills.append(np.array([point + side, point - side, back]))

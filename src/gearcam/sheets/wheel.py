@@ -33,7 +33,7 @@ UP: Final = 0.5 * math.pi
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Sense:
-    """How a cam turns: where its angle is 0, rad, and the sense; None of what slides."""
+    """How a cam turns: its angle is 0 in the direction `zero`, rad; if `clockwise`, it says so."""
 
     zero: float
     clockwise: bool
@@ -186,7 +186,7 @@ def floor_of(keyed: Loop) -> Plane:
 
 
 def fitted(words: str, fit: Any) -> str:
-    """Return the text of a size with its tolerance class and limits, if it has any."""
+    """Return `words`, a size, with tolerance class and limits of its `fit`, a FitSize or None."""
     if fit is None:
         return words
     limits = f"±{decimal(fit.upper)}"

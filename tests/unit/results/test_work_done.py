@@ -53,7 +53,7 @@ WATCHED = {
     "gearcam.kinds.gear_pair.drawings": ("pair_drawing",),
     "gearcam.kinds.gear_pair.sheet": ("pair_sheet",),
     "gearcam.pictures.drawings": ("wheel_drawing",),
-    "gearcam.sheets": ("wheel_sheet",),
+    "gearcam.sheets.part": ("part_sheet",),
     "gearcam.export.dxf": ("dxf_bytes",),
     "gearcam.export.dxf_read": ("measure_dxf",),
     "gearcam.export.sheet_dxf": ("sheet_dxf",),
@@ -194,7 +194,7 @@ EXPECTED: dict[tuple[str, Callable[[str, Path], None]], dict[str, int]] = {
         "build_outline": 4, "Sampler.chords": 4, "make_part": 4, "Sampler.dense": 4, "solid": 4,
         # of teeth, and of parts
         "run_checks": 2,
-        "tool_limits": 2, "wheel_drawing": 2, "pair_drawing": 1, "wheel_sheet": 2, "pair_sheet": 1,
+        "tool_limits": 2, "wheel_drawing": 2, "pair_drawing": 1, "part_sheet": 2, "pair_sheet": 1,
         # of both wheels and the pair, of sheets for cutting of both wheels and all
         "dxf_bytes": 3, "measure_dxf": 3, "sheet_dxf": 3, "sheet_svg": 3, "cut_svg": 3,
         "stl_bytes": 3, "threemf_bytes": 3, "glb_bytes": 3, "svg_bytes": 1, "view_page": 1,
@@ -230,7 +230,7 @@ EXPECTED: dict[tuple[str, Callable[[str, Path], None]], dict[str, int]] = {
         "undercut": 3,
         # and the dense points of the way of a cutter
         "Sampler.dense": 3,
-        "tool_limits": 1, "wheel_sheet": 1, "scene_data": 1, "view_page": 1,
+        "tool_limits": 1, "part_sheet": 1, "scene_data": 1, "view_page": 1,
         # as it is cut, and with its follower
         "cam_drawing": 2,
         # of the cam and the way of a cutter; of the cam and the sheet of all

@@ -31,7 +31,17 @@ from gearcam.laws.phases_of_lift import TURN
 from gearcam.numeric.pose import Pose
 from gearcam.parts.shapes import Circle
 from gearcam.pictures.charts import Chart, Charts
-from gearcam.pictures.drawings import BLANK, FOLLOWER, GROOVE, PITCH, Drawing, Feature, Path, place
+from gearcam.pictures.drawings import (
+    BLANK,
+    FOLLOWER,
+    GROOVE,
+    PITCH,
+    Drawing,
+    Feature,
+    Path,
+    chained,
+    place,
+)
 from gearcam.pictures.scenes import PLACES, MovingBody, Scene
 from gearcam.spatial.globoidal_checks import KIND
 from gearcam.spatial.globoidal_surface import polar
@@ -39,6 +49,7 @@ from gearcam.spatial.globoidal_surface import polar
 if TYPE_CHECKING:
     from gearcam.kinds.globoidal_cam.result import GloboidalCamResult
     from gearcam.numeric.arrays import Array, Plane
+    from gearcam.sheets.sheet import Sheet
     from gearcam.spatial.globoidal import GloboidalCam, GloboidalWall
 
 
@@ -208,3 +219,26 @@ def scene(result: GloboidalCamResult, places: int = PLACES) -> Scene:
     moving = Pose(np.zeros(len(theta)), center(cam, theta))
     turret = MovingBody(name=TURRET, called="rollers", features=rollers(cam), pose=moving)
     return unrolled_scene(result, theta, sheet_of, turret, _EYE)
+
+
+SHEET_ROWS: Final = (
+    "indexer.stops", "indexer.index_deg", "indexer.dwell_deg", "indexer.step_deg",
+    "indexer.backlash_deg", "cam.rotation", "cam.center_distance_mm", "cam.core_radius_mm",
+    "cam.top_mm", "cam.floor_mm", "cam.roller_radius_mm", "cam.groove_width_mm",
+    "cam.pressure_angle_deg.max", "solid.mass_kg",
+)  # fmt: skip
+"""Facts in the table of the workshop drawing."""
+
+
+def sheets(result: GloboidalCamResult) -> tuple[Sheet, ...]:
+    """Return the workshop drawing of a `result`."""
+    from gearcam.kinds.gridded_sheet import cam_sheet
+
+    cam = result.cam
+    drawing = Drawing(name="cam", features=chained(sheet(cam), *grooves(cam), *paths(cam)))
+    column = "turret, deg", lambda at: np.degrees(result.program.derivatives(at, 0)[0])
+    texts = (
+        "globoid through the rollers' middle, unrolled, azimuth 0 to 360 deg from the left",
+        "Walls: walls.csv, and the solid. The unrolled globoid is not true.",
+    )
+    return (cam_sheet(result, drawing, SHEET_ROWS, column, texts),)

@@ -34,19 +34,10 @@ from gearcam.spatial.globoidal_surface import (
     turret_surface,
 )
 
-SHEET_ROWS: Final = (
-    "indexer.stops", "indexer.index_deg", "indexer.dwell_deg", "indexer.step_deg",
-    "indexer.backlash_deg", "cam.rotation", "cam.center_distance_mm", "cam.core_radius_mm",
-    "cam.top_mm", "cam.floor_mm", "cam.roller_radius_mm", "cam.groove_width_mm",
-    "cam.pressure_angle_deg.max", "solid.mass_kg",
-)  # fmt: skip
-"""Facts in the table of the drawing."""
-
 if TYPE_CHECKING:
     from gearcam.base.adjustments import Changes
     from gearcam.numeric.arrays import Array
     from gearcam.numeric.pose import SpacePose
-    from gearcam.sheets.sheet import Sheet
     from gearcam.spatial.globoidal_spec import TurretSpec
     from gearcam.spatial.loaded import RollerTouch
 
@@ -109,22 +100,6 @@ class GloboidalCamResult(GriddedCam):
         program, design = self.program, self.design
         with self.stage("cam"):
             return make_globoidal(program, design.turret, design.cam, design.blank.bore_reach)
-
-    @cached_property
-    def sheets(self) -> tuple[Sheet, ...]:
-        """The workshop drawing."""
-        from gearcam.kinds.globoidal_cam.drawn import grooves, paths, sheet
-        from gearcam.kinds.gridded_sheet import cam_sheet
-        from gearcam.pictures.drawings import Drawing, chained
-
-        cam = self.cam
-        drawing = Drawing(name=STEM, features=chained(sheet(cam), *grooves(cam), *paths(cam)))
-        column = "turret, deg", lambda at: np.degrees(self.program.derivatives(at, 0)[0])
-        texts = (
-            "globoid through the rollers' middle, unrolled, azimuth 0 to 360 deg from the left",
-            "Walls: walls.csv, and the solid. The unrolled globoid is not true.",
-        )
-        return (cam_sheet(self, drawing, SHEET_ROWS, column, texts),)
 
     @property
     def core_size(self) -> tuple[float, float, float]:

@@ -244,6 +244,7 @@ KIND: Final = Kind(
     files=DeferredMapping(f"{_HERE}.shown:FILES", group_of(NAME, "formats")),
     charts=DeferredMapping(f"{_HERE}.drawn:CHARTS"),
     scene=deferred(f"{_HERE}.drawn:scene"),
+    sheets=deferred(f"{_HERE}.drawn:sheets"),
     ladders=DeferredMapping(f"{_HERE}.studies:LADDERS"),
     advice=deferred(f"{_HERE}.advice:SpatialAdvice"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),

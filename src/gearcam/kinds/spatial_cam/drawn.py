@@ -35,6 +35,7 @@ from gearcam.spatial import checks
 if TYPE_CHECKING:
     from gearcam.kinds.spatial_cam.result import SpatialCamResult
     from gearcam.numeric.arrays import Array, Plane
+    from gearcam.sheets.sheet import Sheet
     from gearcam.spatial.cam import SpatialWall
 
 
@@ -209,3 +210,26 @@ def scene(result: SpatialCamResult, places: int = PLACES) -> Scene:
     moving = Pose(np.zeros(len(theta)), centers(result, theta))
     follower = MovingBody(name="follower", called=ROLLER, features=rollers(result), pose=moving)
     return unrolled_scene(result, theta, sheet, follower, _EYE)
+
+
+SHEET_ROWS: Final = (
+    "motion.total_lift", "cam.rotation", "cam.roller_radius_mm", "cam.cone_deg",
+    "cam.groove_width_mm.outer", "cam.groove_width_mm.floor", "cam.floor_radius_mm", "cam.rib_mm",
+    "cam.pressure_angle_deg.max", "cam.lost_motion_mm", "solid.mass_kg",
+)  # fmt: skip
+"""Facts in the table of the workshop drawing."""
+
+
+def sheets(result: SpatialCamResult) -> tuple[Sheet, ...]:
+    """Return the workshop drawing of a `result`."""
+    from gearcam.kinds.gridded_sheet import cam_sheet
+
+    scale, unit = result.lift_unit
+    name, heights = f"lift, {unit}", lambda at: scale * result.program.derivatives(at, 0)[0]
+    if not result.design.follower.oscillating:
+        name, heights = "z, mm", lambda at: centers(result, at).imag
+    texts = (
+        "outside, unrolled, azimuth 0 to 360 deg from the left; chain line: roller's middle",
+        "Walls: walls.csv, and the solid. z from the back.",
+    )
+    return (cam_sheet(result, developed_drawing(result), SHEET_ROWS, (name, heights), texts),)

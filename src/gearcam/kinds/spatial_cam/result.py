@@ -37,20 +37,11 @@ from gearcam.spatial.surface import (
     surface,
 )
 
-SHEET_ROWS: Final = (
-    "motion.total_lift", "cam.rotation", "cam.roller_radius_mm", "cam.cone_deg",
-    "cam.groove_width_mm", "cam.groove_width_mm.outer", "cam.groove_width_mm.floor",
-    "cam.floor_radius_mm", "cam.rib_mm", "cam.pressure_angle_deg.max", "cam.lost_motion_mm",
-    "solid.mass_kg",
-)  # fmt: skip
-"""Facts in the table of the drawing."""
-
 if TYPE_CHECKING:
     from gearcam.base.adjustments import Changes
     from gearcam.numeric.pose import SpacePose
     from gearcam.parts.bands import BandedBody
     from gearcam.results.parts import Estimates
-    from gearcam.sheets.sheet import Sheet
     from gearcam.spatial.loaded import RollerTouch
     from gearcam.spatial.milling import RotaryPath
     from gearcam.spatial.sizing import SolvedDiameter
@@ -171,22 +162,6 @@ class SpatialCamResult(GriddedCam):
     def blank(self) -> Cylinder:
         """What it is made from."""
         return Cylinder(length=self.design.cam.length, bore=self.design.blank.bore_reach)
-
-    @cached_property
-    def sheets(self) -> tuple[Sheet, ...]:
-        """The workshop drawing."""
-        from gearcam.kinds.gridded_sheet import cam_sheet
-        from gearcam.kinds.spatial_cam.drawn import centers, developed_drawing
-
-        name, scale = self.lift_unit[1], self.lift_unit[0]
-        column = f"lift, {name}", lambda at: scale * self.program.derivatives(at, 0)[0]
-        if not self.design.follower.oscillating:
-            column = "z, mm", lambda at: centers(self, at).imag
-        texts = (
-            "outside, unrolled, azimuth 0 to 360 deg from the left; chain line: roller's middle",
-            "Walls: walls.csv, and the solid. z from the back.",
-        )
-        return (cam_sheet(self, developed_drawing(self), SHEET_ROWS, column, texts),)
 
     @property
     def core_size(self) -> tuple[float, float, float]:

@@ -17,9 +17,8 @@ import gearcam
 from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.numeric.arrays import as_pairs
 from gearcam.pictures.drawings import cut_drawing, reach
-from gearcam.sheets import wheel_sheet
-from gearcam.sheets.sheet import LinearDimension
 from helpers_files import DEEP, EDGE, PLATE, built, sliding_of
+from helpers_sheets import sheet_of
 
 
 def test_files_of_a_groove(tmp_path: Path) -> None:
@@ -91,13 +90,13 @@ def test_the_kerf_of_a_groove_that_goes_through() -> None:
 
 def test_the_sheet_shows_the_origin_of_its_bolts() -> None:
     """A cross, and its distances from the nearer side and from the lower edge."""
-    (sheet,) = (wheel_sheet(part, {}, "t") for part in built(PLATE).parts)
-    told = sorted(one.value for one in sheet.dimensions if isinstance(one, LinearDimension))
+    (sheet,) = (sheet_of(part) for part in built(PLATE).parts)
+    told = sorted(one.value for one in sheet.dimensions if one.kind in ("linear", "vertical"))
     assert told == pytest.approx([8.0, 12.0, 12.05, 22.5, 60.0, 194.1])
     assert any("X, Y from the cross" in text.text for text in sheet.texts)
     bolts = "bolts = 2\nbolt_diameter_mm = 6.6\nbolt_spacing_mm = 160\nbolt_height_mm = 8\n"
     bare = built(PLATE, (bolts, ""))
-    assert len(wheel_sheet(bare.part, {}, "t").dimensions) == 4
+    assert len(sheet_of(bare.part).dimensions) == 4
 
 
 def test_three_points_tell_the_curvature_of_an_open_pitch_curve() -> None:

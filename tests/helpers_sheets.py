@@ -1,4 +1,4 @@
-"""A lint of drawings: what a reader of a sheet would trip over."""
+"""Sheets of parts, and a lint of drawings: what a reader of a sheet would trip over."""
 
 from __future__ import annotations
 
@@ -8,14 +8,25 @@ from itertools import combinations
 import numpy as np
 
 from gearcam.numeric.arrays import lengths_along
-from gearcam.sheets.paper import BINDING, MARGIN
+from gearcam.parts.body import Part
+from gearcam.sheets.paper import BINDING, MARGIN, Heading
+from gearcam.sheets.part import part_sheet
 from gearcam.sheets.sheet import FRAME, SERIES, Sheet, Text, text_box
+from gearcam.sheets.spec import DrawingSpec
 
 STEP = 0.1
 """Distance of the points of lines that are looked at, mm of paper."""
 
 EDGE = 0.05
 """How far a line may reach into the box of a text, mm of paper."""
+
+
+def heading(title: str = "t", **notes: str | float) -> Heading:
+    return Heading(title=title, notes=DrawingSpec(**notes))  # type: ignore[arg-type]
+
+
+def sheet_of(part: Part, facts: dict[str, str] | None = None, title: str = "t") -> Sheet:
+    return part_sheet(part, facts or {}, heading(title))
 
 
 def box(sheet: Sheet, text: Text) -> np.ndarray:
@@ -46,24 +57,25 @@ def faults(sheet: Sheet) -> Iterator[str]:
     for (one, a), (two, b) in combinations(boxes.values(), 2):
         if min(a[2], b[2]) > max(a[0], b[0]) and min(a[3], b[3]) > max(a[1], b[1]):
             yield f"{one!r} lies on {two!r}"
-    every = np.array([corners for _, corners in boxes.values()]) + [EDGE, EDGE, -EDGE, -EDGE]
+    inwards = np.array([EDGE, EDGE, -EDGE, -EDGE])
+    every = np.array([corners for _, corners in boxes.values()]) + inwards
     names = [words for words, _ in boxes.values()]
-    for stroke in sheet.strokes:
-        chain = np.append(stroke.points, stroke.points[:1]) if stroke.closed else stroke.points
+    for line in sheet.drawn_lines:
+        chain = np.append(line.points, line.points[:1]) if line.closed else line.points
         along = points(chain)
         x, y = along.real, along.imag
-        if stroke.layer != FRAME and (
+        if line.layer != FRAME and (
             min(x.min() - limits[0], y.min() - limits[1]) < -1e-6
             or min(limits[2] - x.max(), limits[3] - y.max()) < -1e-6
         ):
-            yield f"a line of {stroke.layer} is outside the frame"
+            yield f"a line of {line.layer} is outside the frame"
         within = (
             (x[:, None] > every[:, 0])
             & (y[:, None] > every[:, 1])
             & (x[:, None] < every[:, 2])
             & (y[:, None] < every[:, 3])
         ).any(axis=0)
-        yield from (f"a line of {stroke.layer} on {names[k]!r}" for k in np.flatnonzero(within))
+        yield from (f"a line of {line.layer} on {names[k]!r}" for k in np.flatnonzero(within))
     yield from twice(sheet)
 
 
