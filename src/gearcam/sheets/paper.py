@@ -57,6 +57,9 @@ PAD: Final = 3.0
 INSET: Final = 1.5
 """Distance of a cell's text from its edge, mm."""
 
+ROOMY: Final = 1.1
+"""Width of letters over those of Helvetica for which cells have space: fonts of programs differ."""
+
 SCALES: Final = tuple(base * 10.0**power for power in range(2, -7, -1) for base in (5.0, 2.0, 1.0))[
     2:
 ]
@@ -324,6 +327,7 @@ def _write(board: Board, text: str, place: complex, wide: float, height: float =
     """Write a line, lower and then narrower if it is longer than its space."""
     text = " ".join(text.split())
     if text:
+        wide /= ROOMY
         height = _least(height * min(1.0, wide / text_width(text, height)))
         squeeze = min(1.0, wide / text_width(text, height))
         at = board.corner + board.unit * place
