@@ -16,6 +16,7 @@ from ezdxf.entities.dimension import Dimension
 from ezdxf.lldxf.encoding import decode_dxf_unicode
 
 from gearcam.base.errors import InfeasibleError
+from gearcam.base.numerals import decimal
 from gearcam.export.dxf import DxfStyle
 from gearcam.export.dxf_read import measure_dxf, read_dxf
 from gearcam.export.sheet_dxf import sheet_dxf
@@ -143,7 +144,7 @@ def faults(data: bytes, expected: list[float], text: str) -> list[float]:
         near = [value for value in found if abs(value - size) < 1e-6]
         if near:
             found.remove(near[0])
-        elif f"R{size:.3f}".rstrip("0").rstrip(".") not in text:
+        elif not {f"R{decimal(size)}", f"Ø{decimal(size)},"} & {*text.split()}:
             missing.append(size)
     return missing + found
 

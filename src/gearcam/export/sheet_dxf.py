@@ -124,6 +124,7 @@ def _prepare(document: Document, sheet: Sheet, old: bool) -> None:
         "dimtoh": 0, "dimcen": 0.0, "dimtxsty": STYLE, "dimtmove": 1, "dimlunit": 2,
     }.items():  # fmt: skip
         made.set_dxf_attrib(name, value)
+        document.header[f"${name.upper()}"] = value  # some programs read them only here
 
 
 def _dimension(space: Any, sheet: Sheet, one: SheetDimension, block: str) -> None:

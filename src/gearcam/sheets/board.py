@@ -48,7 +48,7 @@ OVERHANG: Final = 3.0
 CROSSING: Final = 6.0
 """Penalty of a crossed line, as length of a leader, mm of paper."""
 
-STEEP: Final = 10.0
+STEEP: Final = 15.0
 """Penalty of an upright leader, as its length: programs that draw dimensions anew turn texts along
 the leader, mm of paper."""
 

@@ -75,9 +75,9 @@ def callouts(board: Board, wheel: Wheel, side: float) -> None:
         edge = complex(side - part.ends[0] + part.screw.middle, -part.screw.edge.reach)
         board.label(edge, thread(part.screw))
     for mark in part.marks:
-        words = f"mark {{}}, {decimal(mark.depth)} deep"
-        if not board.callout(mark.edge, words):
-            board.rows.append(("mark", label(mark.edge, words)))
+        words = f"mark {label(mark.edge)}, {decimal(mark.depth)} deep"
+        if not board.callout(mark.edge, words, kind="label"):
+            board.rows.append(("mark", words.removeprefix("mark ")))
 
 
 def _radii(board: Board, wheel: Wheel) -> None:

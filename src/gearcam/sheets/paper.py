@@ -281,7 +281,7 @@ def finish(
     _block(board, heading, name, complex(right - BLOCK[0], MARGIN))
     wide = right - BLOCK[0] - left - 2 * INSET
     for height in (HEIGHT, SERIES[0]):
-        lines = [line for note in notes for line in _wrapped(note, wide, height)]
+        lines = [line for note in notes for line in _wrapped(note, wide / ROOMY, height)]
         pitch = 1.6 * height
         if (len(lines) + 0.5) * pitch <= BLOCK[1]:
             break
