@@ -227,8 +227,8 @@ def height_of(alone: np.ndarray, lines: np.ndarray, wanted: float) -> float | No
     return min(heights.tolist(), key=lambda one: abs(one - wanted), default=None)
 
 
-def in_librecad(sheets: dict[str, Sheet]) -> Report:
-    """Read sheets as DXF in LibreCAD, by the lines of its letters."""
+def in_librecad(sheets: dict[str, Sheet], drawn: dict[str, Sheet] | None = None) -> Report:
+    """Read sheets as DXF in LibreCAD, by the lines of its letters; those `drawn` may be others."""
     report = Report()
     with TemporaryDirectory() as name:
         folder = Path(name)
@@ -237,7 +237,8 @@ def in_librecad(sheets: dict[str, Sheet]) -> Report:
         for first in range(0, len(texts), MANY):
             alone |= drawn_alone(texts[first : first + MANY], folder)
         for name, sheet in sheets.items():
-            lines = printed(sheet_dxf(sheet, DxfStyle(tolerance=1e-3)), folder)
+            shown = (drawn or sheets)[name]
+            lines = printed(sheet_dxf(shown, DxfStyle(tolerance=1e-3)), folder)
             flat = np.concatenate(lines)
             # the frame is the outermost: it tells what a mm of paper is in the print
             size = np.ptp(flat.real) / (sheet.size[0] - 30.0)

@@ -42,7 +42,7 @@ MARGIN: Final = 10.0
 """Margins of the frame from the paper's left edge, and from the other edges, mm."""
 
 TABLE: Final = 86.0
-LABELS: Final = 50.0
+LABELS: Final = 47.0
 ROW: Final = 5.0
 LEAST_ROW: Final = 2.9
 """Width of the tables and of labels, and usual and least height of a row, mm."""
@@ -71,8 +71,8 @@ ALONE: Final = 36.0
 _FEW: Final = 4
 """Digits of numbers in rows with several numbers."""
 
-ACROSS: Final = 3
-"""Pairs of columns of a table of values."""
+COLUMNS: Final = 6
+"""Largest number of columns of a table of values."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -109,15 +109,20 @@ class Heading:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Values:
-    """A table of values: the `title` of both columns, and rows of two texts."""
+    """A table of values: the titles of its columns, and rows of as many texts."""
 
-    title: tuple[str, str]
-    rows: Sequence[tuple[str, str]]
+    title: tuple[str, ...]
+    rows: Sequence[tuple[str, ...]]
+
+    @property
+    def across(self) -> int:
+        """How often its columns stand beside each other."""
+        return COLUMNS // len(self.title)
 
     @property
     def tall(self) -> int:
         """Its number of rows on paper, with the title and a gap."""
-        return math.ceil(len(self.rows) / ACROSS) + 2 if self.rows else 0
+        return math.ceil(len(self.rows) / self.across) + 2 if self.rows else 0
 
 
 NO_VALUES: Final = Values(title=("", ""), rows=())
@@ -352,13 +357,14 @@ def _table(board: Board, rows: Sequence[tuple[str, str]], corner: complex, row: 
 
 def _values(board: Board, values: Values, corner: complex, row: float) -> None:
     """Draw a table of values downwards from its upper left corner, by columns."""
-    tall, wide = values.tall - 2, TABLE / (2 * ACROSS)
+    tall, count = values.tall - 2, len(values.title)
+    wide = TABLE / (values.across * count)
     _chain(board, RULE, corner + TABLE, corner, corner - 1j * row * (tall + 1))
-    for part in range(ACROSS):
+    for part in range(values.across):
         shown = [values.title, *values.rows[part * tall : (part + 1) * tall]]
         for number, texts in enumerate(shown if len(shown) > 1 else (), start=1):
             for place, text in enumerate(texts):
-                at = corner + (2 * part + place) * wide - 1j * row * number
+                at = corner + (count * part + place) * wide - 1j * row * number
                 _write(board, text, at + 0.8 + 0.27j * row, wide - 1.6, _least(0.5 * row))
                 _chain(board, RULE, at, at + wide, at + wide + 1j * row)
 

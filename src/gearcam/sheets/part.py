@@ -18,6 +18,7 @@ from typing import Final, cast
 from gearcam.base.numerals import decimal
 from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Hub, Part, ScrewHole
+from gearcam.parts.shafts import keyway_of
 from gearcam.parts.shapes import Circle, Loop, extremes
 from gearcam.pictures.drawings import box, part_features, place, placed
 from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board, Measure
@@ -293,8 +294,9 @@ def _bore_view(board: Board, wheel: Wheel, bore: Loop, left: float) -> None:
         words = fitted(decimal(2.0 * half), wheel.fits.get("keyway"))
         over = Measure(first=edge, second=edge + 2.0 * half, text=words)
         board.measure([over], max(top, radius), side=1)
-        if wheel.fits.get("keyway"):  # DIN 6885-1
-            limits = f" (+{0.1 if half <= 3.0 else 0.2 if half <= 16.0 else 0.3}/0)"
+        key = keyway_of(2.0 * radius)
+        if wheel.fits.get("keyway") and key and abs(top - radius - key.hub_depth) < SAME:
+            limits = f" (+{key.tolerance}/0)"
     bottom = complex(x, -radius) if kind != "flats" else edge.conjugate()
     depth = decimal(top - bottom.imag) + limits
     board.measure([Measure(first=bottom, second=edge, text=depth)], x - radius, vertical=True)
