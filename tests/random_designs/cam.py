@@ -15,7 +15,7 @@ from random_designs.blank import blank, marks
 from random_designs.draw import Draw, short
 from random_designs.goals import seek
 from random_designs.laws import random_motion_law
-from random_designs.output import asked, drive, dynamics, forces, studies
+from random_designs.output import asked, drawn, drive, dynamics, forces, studies
 
 FOLLOWERS: Final = ("knife-edge", "roller", "flat", "domed", "point", "roller", "flat", "domed")
 """Followers, which take turns; a point is a knife edge."""
@@ -374,4 +374,5 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     disc = made["cam"].get("form", "disc") == "disc"
     seek(made, index, *(GOALS if disc else ("cam.pressure_angle_deg.max", "motion.peak_jerk")))
     marks(d, made, 0.05 * size, "zero_mark")
+    drawn(d, made, "print-pdf")
     return made

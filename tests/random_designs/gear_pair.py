@@ -15,7 +15,7 @@ from random_designs.draw import Draw, short
 from random_designs.goals import seek
 from random_designs.law_draw import Counts, LawDraw
 from random_designs.laws import random_law
-from random_designs.output import asked, drive, studies
+from random_designs.output import asked, drawn, drive, studies
 from random_designs.pair_loads import loaded
 
 _SHARES: Final = {
@@ -197,6 +197,7 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     seek(made, index, "pair.center_distance_mm", "mesh.acceleration_max")
     loaded(d, made, module, None if closed and not opened else 10.0)
     marks(d, made, module)
+    drawn(d, made, "print-pdf")
     return made | ({"bar": _bar(d, module)} if not closed else {})
 
 

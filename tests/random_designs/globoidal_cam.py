@@ -14,7 +14,7 @@ from random_designs.blank import classes, marks
 from random_designs.draw import Draw, short
 from random_designs.goals import seek
 from random_designs.laws import random_motion_law
-from random_designs.output import drive, studies, turret_forces
+from random_designs.output import drawn, drive, studies, turret_forces
 
 _LAWS: Final = tuple(
     name
@@ -79,4 +79,5 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     turret_forces(d, made)
     seek(made, index, "cam.pressure_angle_deg.max", "cam.length_mm")
     marks(d, made, 0.2 * radius, "zero_mark")
+    drawn(d, made)
     return made

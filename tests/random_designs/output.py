@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any, Final
 
+from gearcam.designs.outputs import DRAWINGS
 from random_designs.documented import known_keys, schema
 from random_designs.draw import Draw, short
 
@@ -42,6 +43,34 @@ def asked(d: Draw, shares: Mapping[str, float], rarer: float = 1.0) -> dict[str,
     if d.chance(0.3):
         output["inspection_points"] = d.whole(8, 40)
     return output
+
+
+def drawn(d: Draw, design: dict[str, Any], *more: str) -> None:
+    """Ask for a workshop drawing, and say more on it, in a few designs.
+
+    Parameters
+    ----------
+    d : Draw
+        Random numbers of this design.
+    design : dict
+        The design, which is changed.
+    more : str
+        Kinds of files beside those of drawings that may be asked for.
+    """
+    if not d.chance(0.1):
+        return
+    two = ["C45E", "POM"] if "pair" in design and d.chance(0.5) else "16MnCr5"
+    all_of = {
+        "part_number": "G-1024", "material": two, "heat_treatment": "hardened, 58 HRC",
+        "surface": "Ra 1.6", "general_tolerances": "ISO 2768-mK", "revision": "B",
+        "author": "A. Maker", "approved_by": "B. Checker", "owner": "Example Works",
+        "date": "2030-01-31", "profile_tolerance_mm": short(d.log(0.005, 0.1)),
+    }  # fmt: skip
+    if design.get("blank", {}).get("bore_diameter_mm"):
+        all_of["runout_mm"] = short(d.log(0.005, 0.1))
+    design["drawing"] = {key: value for key, value in all_of.items() if d.chance(0.5)}
+    kind = d.pick([*DRAWINGS, *more])
+    design["output"]["files"] = list(dict.fromkeys([*design["output"]["files"], kind]))
 
 
 def studies(d: Draw, design: dict[str, Any], stage: str, name: str = "accuracy") -> None:

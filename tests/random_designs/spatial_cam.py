@@ -14,7 +14,7 @@ from random_designs.blank import classes, marks
 from random_designs.cam import motion_by_phases, motion_of_turn
 from random_designs.draw import Draw, short
 from random_designs.goals import seek
-from random_designs.output import drive, forces_in_space, studies
+from random_designs.output import drawn, drive, forces_in_space, studies
 
 _LAWS: Final = tuple(
     name
@@ -76,6 +76,7 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     forces_in_space(d, made, swings)
     seek(made, index, "cam.pressure_angle_deg.max", "cam.outer_diameter_mm")
     marks(d, made, 0.2 * radius, "zero_mark")
+    drawn(d, made)
     return made
 
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -21,7 +21,7 @@ import numpy as np
 from gearcam.base.numerals import decimal
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane, as_pairs, lengths_along
 from gearcam.pictures.drawings import Circle, Feature, Path, Shape, chains
-from gearcam.sheets.dimensions import SHELF, along, arrow_head, leader, linear
+from gearcam.sheets.dimensions import SHELF, UPRIGHT, along, arrow_head, leader, linear
 from gearcam.sheets.sheet import (
     CENTERLINE,
     Box,
@@ -155,6 +155,13 @@ class Board:
         self.texts.append(text)
         self._take(*text_box(text, self.unit))
 
+    def first_free(self, texts: Iterable[Text]) -> None:
+        """Write the first of several `texts` that has space, or else the first."""
+        given = list(texts)
+        boxes = [text_box(one, self.unit) for one in given]
+        free = self._empty(np.array([low for low, _ in boxes]), np.array([b for _, b in boxes]))
+        self.write(given[int(np.argmax(free))])
+
     def measure(
         self, measures: Sequence[Measure], at: float, *, side: int = -1, vertical: bool = False
     ) -> None:
@@ -257,7 +264,7 @@ class Board:
         spokes: Plane = np.exp(1j * angle)
         knees = radius + reach * self.unit
         at = np.asarray(circle.center + knees * spokes, dtype=np.complex128)
-        left = reach * spokes.real <= 0.0
+        left = reach * spokes.real <= UPRIGHT
         low = at - size.real * self.unit * left
         good = self._empty(low, low + size * self.unit) & (knees > 0.0)
         best, least = None, math.inf

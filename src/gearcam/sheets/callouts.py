@@ -65,7 +65,7 @@ def frames(board: Board, wheel: Wheel, heading: Heading, left: float) -> None:
 def callouts(board: Board, wheel: Wheel, side: float) -> None:
     """Draw on a `board` the leaders of a `wheel`, whose section begins at x = `side`, mm."""
     part = wheel.part
-    _holes(board, part)
+    _holes(board, part, wheel.origin)
     if wheel.turns and (part.inner or not wheel.round):
         _radii(board, wheel)
     for opening in part.openings:
@@ -94,7 +94,7 @@ def _radii(board: Board, wheel: Wheel) -> None:
             board.rows.append((f"{word}. radius from axis", decimal(radius)))
 
 
-def _holes(board: Board, part: Part) -> None:
+def _holes(board: Board, part: Part, origin: complex) -> None:
     """Draw the centre lines of all holes, then their sizes, large ones first."""
     groups: dict[tuple[int, int], list[Circle]] = {}
     for circle in holes_of(part):
@@ -112,7 +112,8 @@ def _holes(board: Board, part: Part) -> None:
     for group in patterns:
         _pattern(board, group)
     for hole in singles:
-        place = f"X {decimal(hole.center.real)}  Y {decimal(hole.center.imag)}"
+        at = hole.center - origin
+        place = f"X {decimal(at.real)}  Y {decimal(at.imag)}"
         board.rows.append((label(hole, names[id(hole)]), place))
 
 

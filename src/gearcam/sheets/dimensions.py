@@ -136,7 +136,8 @@ def leader(
     spoke = cmath.rect(1.0, angle)
     edge, bend = center + radius * spoke, center + knee * spoke
     wide = text_width(label) * unit
-    end = bend + (-wide if bend.real <= edge.real else wide)
+    left = (knee - radius) / unit * spoke.real <= UPRIGHT
+    end = bend + (-wide if left else wide)
     return SheetDimension(
         kind=kind,
         value=2.0 * radius if kind == "diameter" else radius,
@@ -146,6 +147,9 @@ def leader(
         text=Text(text=label, place=0.5 * (bend + end) + 1j * GAP * unit, anchor="middle"),
     )
 
+
+UPRIGHT: Final = 1e-9
+"""How far a leader to the right goes to the right at least, mm of paper."""
 
 SHELF: Final = HEIGHT + GAP
 """Height of a text with the line below it, mm of paper."""

@@ -26,7 +26,7 @@ from gearcam.sheets.board import label_of as label
 from gearcam.sheets.callouts import callouts, frames, turning_arrow
 from gearcam.sheets.paper import NO_VALUES, Heading, Values, begin, finish
 from gearcam.sheets.sheet import CENTERLINE, EDGE, HEIGHT, HIDDEN, Sheet, Text, fine
-from gearcam.sheets.symbols import datum, section_line
+from gearcam.sheets.symbols import datum, section_letters, section_line
 from gearcam.sheets.wheel import (
     BORES,
     SAME,
@@ -112,6 +112,7 @@ def part_sheet(
     _section_sizes(board, wheel, side)
     if turning is not None:
         turning_arrow(board, wheel, turning)
+    section_letters(board, wheel.plane, wheel.low.imag, wheel.high.imag)
     callouts(board, wheel, side)
     frames(board, wheel, heading, side)
     return finish(
@@ -127,7 +128,8 @@ def part_sheet(
 def _notes(wheel: Wheel) -> list[str]:
     part, chamfer = wheel.part, wheel.part.chamfer
     about = " R, X, Y and angles from the axis." if wheel.turns else ""
-    about = " X, Y from the cross." if wheel.placed else about
+    if not wheel.turns and holes_of(part):
+        about = f" X, Y from the {'cross' if wheel.placed else 'lower left corner'}."
     return [
         *([f"Chamfer {decimal(chamfer)} x 45 deg on both faces."] if chamfer else []),
         *(["Holes go right through."] if part.openings else []),

@@ -13,6 +13,7 @@ import numpy as np
 
 from gearcam.parts.shapes import Circle
 from gearcam.sheets.board import Board
+from gearcam.sheets.dimensions import UPRIGHT
 from gearcam.sheets.sheet import CENTERLINE, CUT, DIMENSION, HEIGHT, Text, text_width
 
 FRAME: Final = 2.0 * HEIGHT
@@ -29,8 +30,16 @@ def section_line(board: Board, x: float, low: float, high: float) -> None:
         at = far - 1j * way * unit
         board.line(DIMENSION, at, at + 6.0 * unit)
         board.arrow(at + 6.0 * unit, 1.0)
-        place = at + (8.5 - 1.75j) * unit
-        board.write(Text(text="A", place=place, height=3.5, anchor="middle"))
+
+
+def section_letters(board: Board, x: float, low: float, high: float) -> None:
+    """Write on a `board` the letters of the line of the section, where there is space for them."""
+    for end, way in ((low, -1.0), (high, 1.0)):
+        far = complex(x, end + way * 7.0 * board.unit) - 1.75j * board.unit
+        board.first_free(
+            Text(text="A", place=far + away * board.unit, height=3.5, anchor="middle")
+            for away in (8.5, -2.5, 8.5 + 4.0j * way, -2.5 + 4.0j * way, 14.0, -8.0)
+        )
 
 
 def _box(board: Board, low: complex, *cells: str) -> None:
@@ -92,7 +101,7 @@ def frame(board: Board, point: complex, kind: str, value: str, reference: str = 
     angle, knee = found
     spoke = cmath.rect(1.0, angle)
     bend = point + knee * spoke
-    low = bend - (wide * unit if spoke.real <= 0.0 else 0.0)
+    low = bend - (wide * unit if spoke.real <= UPRIGHT else 0.0)
     board.line(DIMENSION, point, bend)
     board.arrow(point, -spoke)
     _box(board, low, "", *cells)

@@ -113,7 +113,13 @@ class Wheel:
     @property
     def placed(self) -> bool:
         """Whether hole positions refer to an origin that is not an axis."""
-        return not self.turns and any(one.kind == HOLE for one in self.part.openings)
+        within = min((-self.low).real, (-self.low).imag, self.high.real, self.high.imag) > -SAME
+        return within and not self.turns and bool(holes_of(self.part))
+
+    @property
+    def origin(self) -> complex:
+        """From where hole positions count, mm: axis, cross, or the lower left corner."""
+        return 0j if self.turns or self.placed else self.low
 
     @cached_property
     def bore(self) -> Opening | None:
