@@ -42,6 +42,7 @@ _FINE: Final = 1e-3
 
 def cam_sheet(
     result: GriddedCam,
+    radius: float,
     drawing: Drawing,
     rows: Sequence[str],
     column: tuple[str, Callable[[Array], Array]],
@@ -53,6 +54,8 @@ def cam_sheet(
     ----------
     result : GriddedCam
         The cam.
+    radius : float, mm
+        Largest radius.
     drawing : Drawing
         Its outside unrolled.
     rows : sequence of str
@@ -72,7 +75,6 @@ def cam_sheet(
         If it does not fit on a sheet, or run-out is given without a bore.
     """
     design, (_, base, length) = result.design, result.core_size
-    radius = max(result.rims)
     outline = Circle(center=0j, diameter=2.0 * radius).contour(_FINE)
     if result.core is not None:
         part = replace(result.core, contours=(outline,))

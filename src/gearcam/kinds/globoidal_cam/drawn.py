@@ -241,4 +241,4 @@ def sheets(result: GloboidalCamResult) -> tuple[Sheet, ...]:
         "globoid through the rollers' middle, unrolled, azimuth 0 to 360 deg from the left",
         "Walls: walls.csv, and the solid. The unrolled globoid is not true.",
     )
-    return (cam_sheet(result, drawing, SHEET_ROWS, column, texts),)
+    return (cam_sheet(result, max(result.rims), drawing, SHEET_ROWS, column, texts),)

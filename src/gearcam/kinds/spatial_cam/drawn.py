@@ -232,4 +232,5 @@ def sheets(result: SpatialCamResult) -> tuple[Sheet, ...]:
         "outside, unrolled, azimuth 0 to 360 deg from the left; chain line: roller's middle",
         "Walls: walls.csv, and the solid. z from the back.",
     )
-    return (cam_sheet(result, developed_drawing(result), SHEET_ROWS, (name, heights), texts),)
+    radius, outside = result.cam.outer_radius, developed_drawing(result)
+    return (cam_sheet(result, radius, outside, SHEET_ROWS, (name, heights), texts),)
