@@ -38,7 +38,7 @@ def section_letters(board: Board, x: float, low: float, high: float) -> None:
         far = complex(x, end + way * 7.0 * board.unit) - 1.75j * board.unit
         board.first_free(
             Text(text="A", place=far + away * board.unit, height=3.5, anchor="middle")
-            for away in (8.5, -2.5, 8.5 + 4.0j * way, -2.5 + 4.0j * way, 14.0, -8.0)
+            for away in (9.0, -2.8, 8.5 + 4.0j * way, -2.5 + 4.0j * way, 14.0, -8.0)
         )
 
 
