@@ -293,20 +293,12 @@ def finish(
     for number, line in enumerate(lines, start=1):
         place = complex(left + INSET, MARGIN + BLOCK[1] - pitch * number)
         _write(board, line, place, wide, height)
-    return Sheet(
-        name=name,
-        title=heading.title,
-        paper=board.paper,
-        size=size,
-        scale=board.scale,
-        corner=board.corner,
-        features=tuple(board.features),
-        hatches=tuple(board.hatches),
-        fills=tuple(board.fills),
-        dimensions=tuple(board.dimensions),
-        texts=tuple(board.texts),
-        rows=rows,
-    )
+    drawn = {
+        part: tuple(getattr(board, part))
+        for part in ("features", "hatches", "fills", "dimensions", "texts")
+    }
+    common = {part: getattr(board, part) for part in ("paper", "scale", "corner")}
+    return Sheet(name=name, title=heading.title, size=size, rows=rows, **common, **drawn)
 
 
 def _wrapped(note: str, wide: float, height: float) -> list[str]:
