@@ -24,8 +24,8 @@ BEGIN: Final = "<!-- what each output needs: written by tools/needs.py -->"
 END: Final = "<!-- end of what each output needs -->"
 
 PACKAGES: Final = (
-    "numpy", "shapely", "ezdxf", "manifold3d", "trimesh", "networkx", "lxml", "jinja2", "rich",
-    "OCP", "matplotlib", "optuna", "distributed", "pyarrow", "skfem",
+    "numpy", "shapely", "ezdxf", "reportlab", "manifold3d", "trimesh", "networkx", "lxml", "jinja2",
+    "rich", "OCP", "matplotlib", "optuna", "distributed", "pyarrow", "skfem",
 )  # fmt: skip
 """Packages that the program may import."""
 

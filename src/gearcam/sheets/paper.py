@@ -109,7 +109,7 @@ class Heading:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Values:
-    """A table of values: the titles of its columns, and rows of as many texts."""
+    """A table of values: the `title` of each column, and rows of as many texts."""
 
     title: tuple[str, ...]
     rows: Sequence[tuple[str, ...]]

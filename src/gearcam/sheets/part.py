@@ -127,7 +127,7 @@ def part_sheet(
 
 def _notes(wheel: Wheel) -> list[str]:
     part, chamfer = wheel.part, wheel.part.chamfer
-    about = " R, X, Y and angles from the axis." if wheel.turns else ""
+    about = " R, X, Y from the axis; angles from x, to the right." if wheel.turns else ""
     if not wheel.turns and holes_of(part):
         about = f" X, Y from the {'cross' if wheel.placed else 'lower left corner'}."
     return [

@@ -33,7 +33,7 @@ def section_line(board: Board, x: float, low: float, high: float) -> None:
 
 
 def section_letters(board: Board, x: float, low: float, high: float) -> None:
-    """Write on a `board` the letters of the line of the section, where there is space for them."""
+    """Write on a `board` the letters of a line at `x` from `low` to `high` where there is space."""
     for end, way in ((low, -1.0), (high, 1.0)):
         far = complex(x, end + way * 7.0 * board.unit) - 1.75j * board.unit
         board.first_free(

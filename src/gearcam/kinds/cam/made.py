@@ -161,7 +161,7 @@ class MadeCam(LoadedCam, PartsResult):
         """The cam as a part, or its first part, with bore, hub, holes and clearance."""
         return self.parts[0]
 
-    @property
+    @cached_property
     def plates(self) -> tuple[Drawing, ...]:
         """A drawing of each part with its curves, in its own frame."""
         return self.form.drawings(self.cam, self.parts)

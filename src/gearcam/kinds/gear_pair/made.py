@@ -252,7 +252,7 @@ class MadePair(PartsResult):
         with self.stage("parts"):
             return make_parts(self.steps, self.design)
 
-    @property
+    @cached_property
     def plates(self) -> tuple[Drawing, ...]:
         """A drawing of each step of both wheels, in its own frame."""
         from gearcam.pictures.drawings import wheel_drawing
