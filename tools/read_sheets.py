@@ -138,7 +138,7 @@ def in_freecad(sheets: dict[str, Sheet]) -> Report:
         for one in measured:
             wanted = abs(one.points[2] - one.points[1])  # it measures from point to point
             off = min((abs(value - wanted) for value in read[file]["distances"]), default=1.0)
-            report.take(name, 1.0 if off < 1e-6 else None, 1.0, one.label)
+            report.take(name, 1.0 if off < 1e-5 else None, 1.0, one.label)
     return report
 
 
