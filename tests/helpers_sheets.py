@@ -63,7 +63,7 @@ def faults(sheet: Sheet) -> Iterator[str]:
     for line in sheet.drawn_lines:
         chain = np.append(line.points, line.points[:1]) if line.closed else line.points
         along = points(chain)
-        x, y = along.real, along.imag
+        x, y = np.real(along), np.imag(along)
         if line.layer != FRAME and (
             min(x.min() - limits[0], y.min() - limits[1]) < -1e-6
             or min(limits[2] - x.max(), limits[3] - y.max()) < -1e-6

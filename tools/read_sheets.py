@@ -241,7 +241,7 @@ def in_librecad(sheets: dict[str, Sheet], drawn: dict[str, Sheet] | None = None)
             lines = printed(sheet_dxf(shown, DxfStyle(tolerance=1e-3)), folder)
             flat = np.concatenate(lines)
             # the frame is the outermost: it tells what a mm of paper is in the print
-            size = np.ptp(flat.real) / (sheet.size[0] - 30.0)
+            size = np.ptp(np.real(flat)) / (sheet.size[0] - 30.0)
             found = marks(lines)
             for text in sheet.words:
                 wanted = text.height * size

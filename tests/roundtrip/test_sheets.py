@@ -440,6 +440,17 @@ def test_the_ruler_of_a_print_is_true() -> None:
     assert "100 mm" in words
 
 
+@pytest.mark.parametrize(
+    ("profile", "told", "titles"),
+    [("groove_cam", "36.025", {"inner, mm", "outer, mm"}), ("tappet", "15", {"radius, mm"})],
+)
+def test_cams_have_a_table_of_their_radii(profile: str, told: str, titles: set[str]) -> None:
+    (sheet,) = built(PROFILES / f"{profile}.toml").sheets
+    shown = {text.text for text in sheet.texts}
+    assert {"angle, deg", told, "345"} | titles <= shown
+    assert [*lint(sheet)] == []
+
+
 def broken(sheet: Sheet) -> Iterator[tuple[str, Sheet]]:
     """Sheets with a fault, and a word of what the lint must say."""
     text, other = sheet.texts[0], sheet.texts[1]

@@ -297,8 +297,16 @@ def finish(
         part: tuple(getattr(board, part))
         for part in ("features", "hatches", "fills", "dimensions", "texts")
     }
-    common = {part: getattr(board, part) for part in ("paper", "scale", "corner")}
-    return Sheet(name=name, title=heading.title, size=size, rows=rows, **common, **drawn)
+    return Sheet(
+        name=name,
+        title=heading.title,
+        paper=board.paper,
+        size=size,
+        scale=board.scale,
+        corner=board.corner,
+        rows=rows,
+        **drawn,
+    )
 
 
 def _wrapped(note: str, wide: float, height: float) -> list[str]:

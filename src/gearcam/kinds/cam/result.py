@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -12,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.base.findings import Finding, in_order, run_checks
+from gearcam.base.numerals import decimal
 from gearcam.cams.carriers import ROUNDING
 from gearcam.cams.checks import KIND
 from gearcam.kinds.cam.design import CamDesign
@@ -35,6 +37,7 @@ if TYPE_CHECKING:
     from gearcam.kinds.cam.solve import Solution
     from gearcam.numeric.arrays import Ints, Plane
     from gearcam.results.study import Progress, StudyResult
+    from gearcam.sheets.paper import Values
 
 _HINTED: Final = ("pressure-angle", "jamming", "sharp-profile", "undercut", "coarse-rows")
 """Findings whose messages name values that help."""
@@ -326,6 +329,22 @@ class CamResult(MadeCam):
         """
         study = self.kind.studies["follow"]
         return study.compute(self, progress or silent, profile=profile, wall=wall, fit=fit)
+
+    def values(self, number: int) -> Values:
+        """Return the radii, or the heights of a plate, of a part (see `PartsResult.values`)."""
+        from gearcam.kinds.cam.calipers import sheet_table
+        from gearcam.sheets.paper import Values
+
+        table = sheet_table(self, number)
+        ends = [name.rpartition("_") for name in table]
+        columns = (np.ma.filled(column, np.nan).tolist() for column in table.values())
+        return Values(
+            title=tuple(f"{name.split('_')[-1]}, {unit}" for name, _, unit in ends),
+            rows=[
+                tuple("" if math.isnan(one) else decimal(one) for one in row)
+                for row in zip(*columns, strict=True)
+            ],
+        )
 
 
 def pressure_column(motion: PitchMotion) -> str:
