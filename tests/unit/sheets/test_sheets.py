@@ -327,6 +327,7 @@ def test_every_row_of_a_sheet_is_a_fact_of_some_design(monkeypatch: pytest.Monke
             "pair.x": 0.1,
         },
         "feeder": {},
+        "ellipse": {"output.files": ["drawing-svg"]},  # with what is measured
         "lathe_slide": {"blank.clearance_mm": 0.01},
         "plate_cam_oscillating": {"blank.density_kg_m3": 7850.0, "blank.clearance_mm": 0.01},
         "plate_cam_offset_roller": {},

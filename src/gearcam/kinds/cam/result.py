@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from gearcam.base.findings import Finding, in_order, run_checks
 from gearcam.base.numerals import decimal
+from gearcam.base.registry import deferred
 from gearcam.cams.carriers import ROUNDING
 from gearcam.cams.checks import KIND
 from gearcam.kinds.cam.design import CamDesign
@@ -38,6 +39,9 @@ if TYPE_CHECKING:
     from gearcam.numeric.arrays import Ints, Plane
     from gearcam.results.study import Progress, StudyResult
     from gearcam.sheets.paper import Values
+
+_TABLE: Final = deferred("gearcam.kinds.cam.calipers:sheet_table")
+"""Returns the table of values of a part."""
 
 _HINTED: Final = ("pressure-angle", "jamming", "sharp-profile", "undercut", "coarse-rows")
 """Findings whose messages name values that help."""
@@ -332,10 +336,9 @@ class CamResult(MadeCam):
 
     def values(self, number: int) -> Values:
         """Return the radii, or the heights of a plate, of a part (see `PartsResult.values`)."""
-        from gearcam.kinds.cam.calipers import sheet_table
         from gearcam.sheets.paper import Values
 
-        table = sheet_table(self, number)
+        table = _TABLE(self, number)
         ends = [name.rpartition("_") for name in table]
         columns = (np.ma.filled(column, np.nan).tolist() for column in table.values())
         return Values(

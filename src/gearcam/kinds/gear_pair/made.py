@@ -13,6 +13,7 @@ from gearcam.base.adjustments import Adjustment
 from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.base.findings import limit_of
 from gearcam.base.numerals import formatted
+from gearcam.designs.outputs import DRAWINGS
 from gearcam.gears.pair import Gear, GearPair, leads, lobes_of, make_gear, make_pair, stepped
 from gearcam.gears.rack_limits import demand_rim, demand_ring
 from gearcam.gears.spec import Finish
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
 _PLAIN: Final = frozenset({"csv", "inspection"})
 """Files that need only the teeth."""
 
-_OF_SHOP: Final = frozenset({"inspection", "drawing-dxf", "drawing-svg"})
+_OF_SHOP: Final = frozenset({"inspection", *DRAWINGS})
 """Files that say what is measured."""
 
 WHOLE: Final = 1e-9
