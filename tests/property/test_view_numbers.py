@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
@@ -34,7 +35,9 @@ def leaves(part: Any, path: tuple[str | int, ...] = ()) -> Iterator[tuple[str, A
         for key, item in part.items() if isinstance(part, dict) else enumerate(part):
             yield from leaves(item, (*path, key))
     else:
-        yield dotted(path), part
+        # of a size with a tolerance class its number is meant
+        classed = isinstance(part, str) and re.fullmatch(r"([\d.]+) (?:[A-Z]|JS)\d+", part)
+        yield dotted(path), float(classed[1]) if classed else part
 
 
 @BY_NAME
