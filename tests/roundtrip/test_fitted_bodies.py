@@ -151,3 +151,14 @@ def test_a_mirrored_cam_keeps_the_direction_of_its_keyway() -> None:
         along = top[(np.abs(top[:, 0]) < 5.0) & (np.abs(top[:, 1]) < 25.0), 1]
         assert along.max() == pytest.approx(23.3 + 0.8, abs=1e-3)  # the floor with its chamfer
         assert along.min() == pytest.approx(-20.8, abs=1e-3)
+
+
+def test_a_thin_wall_and_a_wide_hub_of_a_drum_are_told() -> None:
+    design = gc.load(PROFILES / "ordered_drum.toml")
+    bolts = {"blank.bolts": 3, "blank.bolt_circle_mm": 58, "blank.bolt_angle_deg": 60}
+    found = gc.build(design.with_(bolts | {"blank.bolt_diameter_mm": 12})).findings
+    (thin,) = [one for one in found if one.code == "thin-wall"]
+    assert thin.value == pytest.approx(35.5 - 29 - 6, abs=1e-3)
+    assert "floor of the groove" in thin.message
+    with pytest.raises(gc.InfeasibleError, match="the hub reaches the floor of the groove"):
+        _ = gc.build(design.with_({"blank.hub_diameter_mm": 75})).findings

@@ -13,7 +13,7 @@ import numpy as np
 
 from gearcam.base.adjustments import text_of
 from gearcam.base.errors import ABOVE, InfeasibleError, beyond_limit
-from gearcam.base.findings import Finding, in_order, run_checks
+from gearcam.base.findings import CHECKS, Finding, in_order, limit_of, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.kinds.loaded_cam import LoadedCam
 from gearcam.kinds.shared import turn_in_steps
@@ -334,9 +334,20 @@ class GriddedCam(LoadedCam, Result):
         limits = self.design.limits
         with self.stage("checks"):
             found = [*run_checks(kind, subject, limits), *self.rows.findings]
+            found += self._thin_walls(limit_of(kind, "thin-wall", limits))
             if self.solid_asked and self.carved:
                 found += run_checks(solid, (self.solid_steps, self.chord_error), limits)
             return in_order(found)
+
+    def _thin_walls(self, limit: float) -> Sequence[Finding]:
+        """Return what is found of walls in the core; it is made here, or refused."""
+        if self.core is None:
+            return ()
+        from gearcam.parts.blank import KIND as PARTS
+        from gearcam.parts.checks import CheckedParts
+
+        subject = CheckedParts(parts=(self.core,), names=(STEM,), edge="floor of the groove")
+        return CHECKS[PARTS, "thin-wall"].run(subject, limit)
 
     @cached_property
     def checked(self) -> tuple[Finding, ...]:

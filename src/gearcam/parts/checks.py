@@ -51,6 +51,8 @@ class CheckedParts(ShortRepr):
         Whether a cutter of this kerf leaves metal on flanks, for each part.
     sought : bool
         Whether the largest tools are looked for; a draft does without.
+    edge : str
+        What the outer edge is called.
     """
 
     parts: tuple[Part, ...]
@@ -58,6 +60,7 @@ class CheckedParts(ShortRepr):
     kerf: float = 0.0
     uncut: tuple[bool, ...] = (False, False)
     sought: bool = True
+    edge: str = "outline"
 
     @cached_property
     def tools(self) -> tuple[ToolLimits, ...]:
@@ -88,7 +91,7 @@ def thin_wall(subject: CheckedParts, limit: float) -> Iterator[Remark]:
     between a groove and the outline, and below the floor of a groove.
     """
     for name, part in zip(subject.names, subject.parts, strict=True):
-        walls = list(_walls(part))
+        walls = list(_walls(part, subject.edge))
         if not walls:
             continue
         width, what = min(walls)
@@ -127,8 +130,8 @@ class _Chorded:
         return float(length(shortest_line(other.ring, self.ring)))
 
 
-def _walls(part: Part) -> Iterator[tuple[float, str]]:
-    """Yield thickness and place of every wall."""
+def _walls(part: Part, outline: str) -> Iterator[tuple[float, str]]:
+    """Yield thickness and place of every wall; the outer edge is called `outline`."""
 
     def edge_of(edge: Edge) -> _Chorded:
         return _Chorded(edge.polyline(part.tolerance))
@@ -138,7 +141,7 @@ def _walls(part: Part) -> Iterator[tuple[float, str]]:
     ]
     edges = [
         (_Chorded(edge.polyline(_FINE * part.tolerance)), what)
-        for what, ones in (("outline", part.contours), ("roots", part.inner))
+        for what, ones in ((outline, part.contours), ("roots", part.inner))
         for edge in ones
     ]
     if part.hub is not None:
@@ -151,7 +154,7 @@ def _walls(part: Part) -> Iterator[tuple[float, str]]:
             yield max(edge.to(shape), 0.0), f"{opening.name} and the {what}"
     for recess in part.recesses:
         rim = edge_of(recess.edge)
-        yield rim.to(edges[0][0]), "groove and the outline"
+        yield rim.to(edges[0][0]), f"groove and the {outline}"
         floor = recess.low if recess.front else part.width - recess.high
         yield floor, "groove's floor and the other face"
         islands = [edge_of(one.shape) for one in recess.openings] or [rim]
