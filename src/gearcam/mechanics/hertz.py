@@ -7,12 +7,16 @@ from typing import Final
 
 import numpy as np
 
+from gearcam.base.errors import InfeasibleError
 from gearcam.base.quantities import MPA, Param
 from gearcam.mechanics.material import MaterialSpec
 from gearcam.numeric.arrays import Array
 
 _DEPTHS: Final = np.linspace(0.0, 2.0, 4001)
 """Depths below a contact, in half-widths: beyond, the stress only falls."""
+
+_WIDEST: Final = 0.5
+"""Largest half width of a contact over the smaller radius: beyond, its stiffness means nothing."""
 
 CONTACT_PRESSURE: Final = (
     "contact_pressure",
@@ -116,16 +120,23 @@ def line_stiffness(
     -------
     float, N/mm
 
+    Raises
+    ------
+    InfeasibleError
+        If the contact is not small beside the bodies.
+
     Notes
     -----
     Johnson, Contact Mechanics, 1985, section 5.6.
     """
     square = 4.0 * force / width / (np.pi * curvature * material.contact_modulus)
+    half, most = math.sqrt(square), _WIDEST * min(radii)
+    if half > most:
+        what = "the contact is too wide beside the bodies for Hertz: half its width"
+        where, near = "dynamics.contact_stiffness_n_mm", "a number, or a stiffer material"
+        raise InfeasibleError(what, where=where, value=half, limit=most, unit="mm", nearest=near)
     soft = (
-        2.0
-        * (1.0 - poisson**2)
-        / (np.pi * young)
-        * (math.log(4.0 * radius / math.sqrt(square)) - 1.0)
+        2.0 * (1.0 - poisson**2) / (np.pi * young) * (math.log(4.0 * radius / half) - 1.0)
         for radius, (young, poisson) in zip(radii, material.elasticity, strict=True)
     )
     return width / sum(soft)

@@ -9,6 +9,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
+from gearcam.base.errors import InfeasibleError
 from gearcam.mechanics.hertz import first_yield, line_stiffness, yield_pressure
 from gearcam.mechanics.material import MaterialSpec
 
@@ -69,3 +70,9 @@ def test_the_stiffness_is_the_slope_of_the_approach() -> None:
     soft = (np.log(16.0 * 30.0 * 8.0 / square) - 2.0) / (np.pi * width * modulus)
     found = line_stiffness(500.0, curvature, radii, width, steel)
     assert found == pytest.approx(1.0 / soft, rel=1e-12)
+
+
+def test_a_contact_as_wide_as_its_bodies_is_refused() -> None:
+    soft = MaterialSpec(young_modulus=(0.04, 0.04), poisson=(0.3, 0.3))
+    with pytest.raises(InfeasibleError, match="too wide"):
+        line_stiffness(500.0, 0.2, (10.0, 10.0), 10.0, soft)
