@@ -240,14 +240,16 @@ def demand_reached(
     if height <= _OFF:
         return
     changes = list(_changes(profile, key, height, tolerance))
-    reach = float(rounded_down(profile.hollow, 4))
-    note = f"the value is its height above it; a radius of the follower up to {formatted(reach)} mm"
+    note = "the value is its height above it"
+    if math.isfinite(profile.hollow):
+        reach = formatted(float(rounded_down(profile.hollow, 4)))
+        note += f"; a radius of the follower up to {reach} mm reaches it"
     raise InfeasibleError(
         "the follower does not reach the measured profile, which is hollow there",
         where=f"motion.file, {place(angle)}",
         value=height,
         unit="mm",
-        nearest=f"{note} reaches it",
+        nearest=note,
         adjustments=changes,
     )
 
@@ -256,7 +258,7 @@ def _changes(
     profile: MeasuredProfile, key: str, height: float, tolerance: float
 ) -> Iterator[Adjustment]:
     """Yield what may help: another radius of the follower, or a smoother curve."""
-    if key:
+    if key and math.isfinite(profile.hollow):
         yield Adjustment(near={key: float(rounded_down(profile.hollow, 3))})
     if height < _SCATTER:
         sizes = (shortened(max(tolerance, share * height), 1.0, 2) for share in _WIDER)

@@ -23,6 +23,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from gearcam.base.errors import InfeasibleError
 from gearcam.numeric.bulges import arc_centers, bulge_pieces
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.polygons import nearest
@@ -252,7 +253,10 @@ def _chamfered(body: Any, bevels: Sequence[Bevel], tolerance: float) -> Any:
     maker.Build()
     solids = subshapes(maker.Shape(), "SOLID") if maker.IsDone() else []
     if len(solids) != 1:
-        raise SolidError("the kernel makes no solid with this chamfer")
+        size = bevels[0].height
+        what = "the kernel of the STEP files makes no solid with this chamfer"
+        rule = "a smaller chamfer, or no STEP file: meshes and drawings have it"
+        raise InfeasibleError(what, where="blank.chamfer_mm", value=size, unit="mm", nearest=rule)
     return solids[0]
 
 
