@@ -135,5 +135,5 @@ def marks(d: Draw, design: dict[str, Any], unit: float, mark: str = "") -> None:
     if mark and d.chance(0.5):
         made[mark] = True
     if isinstance(made.get("bore_diameter_mm"), float | int) and "hub_diameter_mm" in made:
-        made["set_screw_mm"] = d.pick([2, 2.5, 3, 4, 5, 6, 8])
+        made["set_screw"] = d.pick(["M2", "M3", "M4", "M8", "#6-32"])
         made["set_screw_angle_deg"] = d.even(-90, 90)

@@ -25,7 +25,7 @@ SIZES: dict[str, Any] = {
     "blank.hub_diameter_mm": 22,
     "blank.hub_front_mm": 9,
 }
-SCREW = SIZES | {"blank.set_screw_mm": 4}
+SCREW = SIZES | {"blank.set_screw": "M4"}
 DRILL = 3.3
 
 DRUM: dict[str, Any] = {
@@ -34,7 +34,7 @@ DRUM: dict[str, Any] = {
     "blank.hub_diameter_mm": 60,
     "blank.hub_front_mm": 14,
     "blank.hub_back_mm": 5,
-    "blank.set_screw_mm": 6,
+    "blank.set_screw": "M6",
     "blank.chamfer_mm": 0.8,
     "blank.rotation_arrow": True,
     "blank.zero_mark": True,

@@ -6,6 +6,9 @@ Faces are made one by one from their curves, with shared corners; hubs are fused
 and openings through a hub are cut out. Nothing is merged or simplified afterwards, so no flank's
 face is lost.
 
+Chamfers are those of smooth edges: the kernel fails at many of the corners of teeth, which stay
+sharp (see `Part.smooth_bevels`).
+
 Refused: parts whose solid is empty, in pieces, invalid or has a wrong volume.
 
 Depends on parts, numeric and solids; on OCP, the kernel's binding, only through `occt`, which loads
@@ -97,6 +100,7 @@ def solids_of(part: Part, tolerance: float) -> list[Any]:
     """
     steps = range(len(part.steps))
     made = valid_solids(part.name, lambda: [_step(part, step, tolerance) for step in steps])
+    part = replace(part, bevels=part.smooth_bevels)
     volume = sum(properties(solid).Mass() for solid in made)
     demand_volume(part, volume, VOLUME_ERROR * part.volume + _explained(part, tolerance))
     return made
@@ -194,7 +198,7 @@ def _step(part: Part, number: int, tolerance: float) -> Any:
         tools.append(_drilled(part.screw))
     made = _combined(occt.BRepAlgoAPI_Cut(), body, tools) if tools else body
     made = _converted(made) if part.recesses else made
-    ends = [one for one in part.bevels if (topmost if one.up else lowest)]
+    ends = [one for one in part.smooth_bevels if (topmost if one.up else lowest)]
     return _chamfered(made, ends, tolerance) if ends else made
 
 

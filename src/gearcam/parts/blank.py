@@ -91,9 +91,12 @@ OPENING_RULES: Final = (
 """Rules for bore, hub and holes."""
 
 TAPPED: Final = {
-    2.0: 1.6, 2.5: 2.05, 3.0: 2.5, 4.0: 3.3, 5.0: 4.2, 6.0: 5.0, 8.0: 6.8, 10.0: 8.5, 12.0: 10.2
+    "M2": 1.6, "M2.5": 2.05, "M3": 2.5, "M4": 3.3, "M5": 4.2, "M6": 5.0, "M8": 6.8, "M10": 8.5,
+    "M12": 10.2, "#4-40": 2.26, "#6-32": 2.71, "#8-32": 3.45, "#10-24": 3.8, "#10-32": 4.04,
+    "1/4-20": 5.11, "5/16-18": 6.53, "3/8-16": 7.94,
 }  # fmt: skip
-"""Tapping drills of coarse threads by their nominal diameters, mm (ISO 2306)."""
+"""Tapping drills of threads, mm: coarse ones of ISO 2306, and usual ones of the unified thread
+(numbers 43, 36, 29, 25, 21 and 7, letter F, 5/16 in)."""
 
 
 def serving(names: Collection[str]) -> set[str]:
@@ -199,9 +202,10 @@ class ShaftBlank(ShortRepr, Fitted):
     hub_diameter: float = _length(doc="diameter of the hub, larger than the bore with its keyway")
     hub_front: float = _length(doc="height of the hub on the front face (+z)")
     hub_back: float = _length(doc="height of the hub on the back face")
-    set_screw: float = _length(
-        doc="set screw in the middle of the hub (of the one in front if there are two): 4 for M4; "
-        "made with its tapping drill"
+    set_screw: str = _word(
+        *TAPPED,
+        doc="set screw in the middle of the hub (of the one in front if there are two), made with "
+        "its tapping drill",
     )
     set_screw_angle: float = _angle(doc="direction of the set screw, from the keyway or the flat")
     lightening_holes: int = _count(doc="number of round lightening holes", le=36)
@@ -302,9 +306,6 @@ class ShaftBlank(ShortRepr, Fitted):
         if self.hub_diameter and self.hub_diameter <= reach:
             rule = f"above {formatted(reach)} mm, the diameter across the bore"
             yield "hub_diameter", None, "the bore is as large as the hub", rule
-        if self.set_screw and self.set_screw not in TAPPED:
-            sizes = ", ".join(formatted(size) for size in TAPPED)
-            yield "set_screw", None, "there is no coarse thread of this diameter", sizes
         if 0.0 < self.bore <= TAPPED.get(self.set_screw, 0.0):
             rule = f"a tapping drill below the bore's {formatted(self.bore)} mm"
             yield "set_screw", None, "the hole of the screw is as wide as the bore", rule

@@ -42,6 +42,9 @@ Kind = Literal["BORE", "HOLE", "SLOT", "INNER", "GROOVE"]
 _FINE: Final = 1e-8
 """Chord error of a bore where a set screw meets it, over the radius of its hole."""
 
+_CORNERS: Final = 12
+"""Most corners of a profile that is not toothed."""
+
 _CHORDS: Final = 2048
 """Chords of the hole of a set screw at which its depth is taken."""
 
@@ -174,6 +177,13 @@ class Bevel(Layer):
         return (self.face,)
 
     @property
+    def uneven(self) -> float:
+        """How far the area half-way is from that of parallels which lose no detail, mm^2."""
+        way = 1.0 if self.hollow else -1.0
+        edge, middle, face = (one.moments.area for one in (self.edge, self.middle, self.face))
+        return abs(middle - 0.25 * (face + 3.0 * edge + way * self.height * self.edge.length))
+
+    @property
     def moments(self) -> Moments:
         """Moments of the plane region, on the average over its height."""
         # areas between parallels are quadratic in the distance, for which this is exact
@@ -192,13 +202,13 @@ class ScrewHole(Layer):
         The hub.
     openings : tuple of Opening
         The bore.
-    size : float, mm
-        Nominal diameter of the thread: 4 of M4.
+    size : str
+        Its thread, such as ``M4``.
     angle : float, rad
         Its direction.
     """
 
-    size: float
+    size: str
     angle: float
 
     @property
@@ -449,6 +459,15 @@ class Part(ShortRepr, NotebookView):
         return (
             *(replace(one, high=self.width + overshoot * one.height) for one in front),
             *(replace(one, low=-overshoot * one.height) for one in back),
+        )
+
+    @property
+    def smooth_bevels(self) -> tuple[Bevel, ...]:
+        """The chamfers of round edges, bores and profiles, not those of teeth."""
+        return tuple(
+            one
+            for one in self.bevels
+            if not isinstance(one.edge, Contour) or len(one.edge.runs) <= _CORNERS
         )
 
     @property

@@ -53,6 +53,8 @@ class CheckedParts(ShortRepr):
         Whether the largest tools are looked for; a draft does without.
     edge : str
         What the outer edge is called.
+    step : bool
+        Whether STEP files are written.
     """
 
     parts: tuple[Part, ...]
@@ -61,6 +63,7 @@ class CheckedParts(ShortRepr):
     uncut: tuple[bool, ...] = (False, False)
     sought: bool = True
     edge: str = "outline"
+    step: bool = False
 
     @cached_property
     def tools(self) -> tuple[ToolLimits, ...]:
@@ -236,3 +239,19 @@ def _tightest(tools: ToolLimits) -> str:
     if place is None:
         return what
     return f"{what} at x = {decimal(place.real, 4)}, y = {decimal(place.imag, 4)} mm"
+
+
+@check("sharp-in-step", kind=KIND, severity="note")
+def sharp_in_step(subject: CheckedParts, _: float) -> Iterator[Remark]:
+    """Note edges whose chamfer is not in the STEP file.
+
+    Looks at: chamfers of toothed edges, at whose corners the kernel fails; meshes and drawings have
+    them.
+    """
+    for name, part in zip(subject.names, subject.parts, strict=True):
+        if subject.step and len(part.smooth_bevels) < len(part.bevels):
+            yield Remark(
+                "The STEP file has the toothed edges sharp: their chamfer is in meshes, and is "
+                "stated on the drawing.",
+                name,
+            )

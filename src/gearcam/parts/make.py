@@ -8,10 +8,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, Final
 
 from gearcam.base.adjustments import Adjustment
 from gearcam.base.numerals import formatted
+from gearcam.base.quantities import NONE
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.polygons import room_around
 from gearcam.parts.blank import TAPPED, ShaftBlank
@@ -28,6 +29,9 @@ from gearcam.parts.body import (
 )
 from gearcam.parts.openings import Stock, Workpiece, openings
 from gearcam.parts.shapes import Circle
+
+_UNEVEN: Final = 0.001
+"""Difference of an area from what parallels without lost details have, over size times length."""
 
 
 def make_part(
@@ -83,7 +87,7 @@ def make_part(
         hub = Hub(diameter=blank.hub_diameter, front=blank.hub_front, back=blank.hub_back)
         _demand_within(hub, room or contours, work)
     screw = None
-    if hub is not None and blank.set_screw:
+    if hub is not None and blank.set_screw != NONE:
         screw = _screw(blank, hub, found, width, work)
     part = Part(
         name=name,
@@ -204,23 +208,34 @@ def _bevel(
 ) -> Bevel:
     """Return the chamfer of an edge in the upper or the lower face of a layer."""
     from gearcam.parts.parallel import moved, sized
+    from gearcam.parts.rolled import too_far
 
     whole = edge if isinstance(edge, Contour) else edge.contour(part.tolerance)
 
-    def parallel(by: float) -> Contour:
-        return moved(whole, by if hollow else -by)
-
-    face = sized(parallel, size, f"{work.name}, blank.chamfer_mm", "chamfer")
     low, high = (layer.high - size, layer.high) if up else (layer.low, layer.low + size)
-    return Bevel(
-        edge=edge,
-        middle=parallel(0.5 * size),
-        face=face,
-        low=low,
-        high=high,
-        up=up,
-        hollow=hollow,
-    )
+    way = 1.0 if hollow else -1.0
+    made: list[Bevel] = []
+
+    def outer(by: float) -> Contour:
+        """Return the edge in the face, where no detail of the edge is lost."""
+        face, middle = moved(whole, way * by), moved(whole, 0.5 * way * by)
+        ends = (high - by, high) if up else (low, low + by)
+        one = Bevel(
+            edge=edge,
+            middle=middle,
+            face=face,
+            low=ends[0],
+            high=ends[1],
+            up=up,
+            hollow=hollow,
+        )
+        if one.uneven > _UNEVEN * by * whole.length:
+            raise too_far(whole, by)
+        made.append(one)
+        return face
+
+    sized(outer, size, f"{work.name}, blank.chamfer_mm", "chamfer")
+    return made[-1]
 
 
 def finished(contour: Contour, blank: ShaftBlank, work: Workpiece) -> Contour:

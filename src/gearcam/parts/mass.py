@@ -147,7 +147,7 @@ def products_of_inertia(body: Part | Stack, density: float) -> complex:
 
 def quadrature_error(part: Part) -> float:
     """Return the error of a part's volume, mm^3, from sampled edges (see `area_error`)."""
-    return sum(
+    return sum(bevel.uneven * bevel.height for bevel in part.bevels) + sum(
         layer.height * _missed(edge)
         for layer in (*part.layers, *part.pockets)
         for edge in layer.edges

@@ -42,6 +42,9 @@ _FILLED: Final = 18
 ROUNDING: Final = 1e-8 * 2.0 ** (1 - _FILLED)
 """Largest size of that grid, over the reach of an outline."""
 
+_JOINED: Final = 4.0
+"""Error of the triangles of a chamfer, over the chord tolerance."""
+
 LIBRARIES: Final = '"manifold3d>=3.5,<3.6" "trimesh>=5,<6" networkx lxml'
 """Libraries that only solids need, as arguments of pip."""
 
@@ -488,7 +491,11 @@ def volume_error(body: Body) -> float:
 
 @volume_error.register
 def _(part: Part) -> float:
-    total = 0.0
+    # triangles of a chamfer join chords of its edge to those of the edge's parallel
+    total = sum(
+        (_JOINED * part.tolerance * bevel.edge.length + bevel.uneven) * bevel.height
+        for bevel in part.bevels
+    )
     for layer in (*part.layers, *part.pockets):
         for edge in layer.edges:
             error = edge.chord_error if isinstance(edge, Contour) else part.tolerance

@@ -203,4 +203,4 @@ def fitted(words: str, fit: Any) -> str:
 
 def thread(screw: ScrewHole) -> str:
     """Return the thread of a set screw in words."""
-    return f"set screw M{decimal(screw.size)}"
+    return f"set screw {screw.size}"

@@ -23,7 +23,7 @@ from helpers_sampling import chosen
 BORE = {"bore_diameter_mm": 8}
 KEYWAY = BORE | {"keyway_width_mm": 2, "keyway_depth_mm": 1}
 HUB = {"hub_diameter_mm": 13, "hub_front_mm": 3}
-SCREW = BORE | HUB | {"set_screw_mm": 2}
+SCREW = BORE | HUB | {"set_screw": "M2"}
 BOLTS = {"bolts": 2, "bolt_circle_mm": 20, "bolt_diameter_mm": 2}
 ROW = {"bolts": 2, "bolt_diameter_mm": 2, "bolt_height_mm": 5, "bolt_spacing_mm": 60}
 HOLES = BORE | {"lightening_holes": 4, "rim_mm": 4}
@@ -56,7 +56,7 @@ KEYS: dict[str, tuple[dict[str, Any], Any, Any]] = {
     "clearance_mm": ({}, 0.05, 0.1),
     "clearance_bores": (BOLTS | {"clearance_mm": 0.1}, True, False),
     "tip_rounding_mm": ({}, 0.1, 0.2),
-    "set_screw_mm": (SCREW, 2, 2.5),
+    "set_screw": (SCREW, "M2", "M2.5"),
     "set_screw_angle_deg": (SCREW, 30, 60),
     "chamfer_mm": ({}, 0.2, 0.3),
     "rotation_arrow": ({}, True, False),
@@ -160,7 +160,7 @@ def _blank(body: str, key: str, value: Any) -> dict[str, Any]:
         given["bolt_circle_mm"] += 74
     if wheel == 0:
         return {**document["blank"], **given}
-    none = {"density_kg_m3": 7850, "shaft": "none", "keyway": "none"}
+    none = {"density_kg_m3": 7850} | dict.fromkeys(("shaft", "keyway", "set_screw"), "none")
     return {
         one: size if one in COMMON else [size if k == wheel else none.get(one, 0) for k in (1, 2)]
         for one, size in given.items()

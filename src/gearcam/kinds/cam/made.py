@@ -239,6 +239,7 @@ class MadeCam(LoadedCam, PartsResult):
             kerf=self.design.output.kerf,
             uncut=(False,) * len(parts),
             sought=not self.drafted,
+            step="step" in self.design.output.files,
         )
 
     def turning(self, number: int) -> Sense | None:

@@ -224,7 +224,8 @@ class MadePair(PartsResult):
         from gearcam.kinds.gear_pair.parts import parts_subject
 
         kerf, sought = self.design.output.kerf, not self.drafted
-        return parts_subject(self.parts, self.gears, kerf, sought=sought)
+        made = parts_subject(self.parts, self.gears, kerf, sought=sought)
+        return replace(made, step="step" in self.design.output.files)
 
     @property
     def ordered(self) -> bool:

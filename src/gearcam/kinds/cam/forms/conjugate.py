@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.facts import Fact
-from gearcam.base.quantities import ANGLE, LENGTH, LONGEST, param, positive_length
+from gearcam.base.quantities import ANGLE, LENGTH, LONGEST, NONE, param, positive_length
 from gearcam.base.rules import Breach, only_with
 from gearcam.cams.conjugate import ConjugateCam, SecondRoller, make_conjugate
 from gearcam.cams.placing import make_round_follower
@@ -186,7 +186,7 @@ class Conjugate(Plates[ConjugateCam, ConjugateSpec, ConjugateFollower]):
                 wall,
                 blank
                 if blank.hub_front or blank.hub_back
-                else replace(blank, hub_diameter=0.0, set_screw=0.0),
+                else replace(blank, hub_diameter=0.0, set_screw=NONE),
             )
             for wall, blank in zip(cam.walls, blanks, strict=True)
         )
