@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Final
 
 from gearcam.base.errors import InfeasibleError
@@ -238,7 +238,7 @@ def begin(size: complex, room: Box, low: complex, rows: int, wide: float = 0.0) 
         idle = complex(min(idle.real, (last - first).real - ALONE - scale * wide), idle.imag)
     corner = low - (first + room[0] + 0.5 * idle) / scale
     area = corner + first / scale, corner + last / scale
-    return Board(scale=scale, area=area, paper=paper, corner=corner)
+    return Board(scale=scale, area=area, paper=paper, size=PAPERS[paper], corner=corner)
 
 
 def finish(
@@ -271,9 +271,9 @@ def finish(
     -------
     Sheet
     """
-    size, more = PAPERS[board.paper], Counter(board.rows)
+    size, more = board.size, Counter(board.rows)
     alike = ((f"{n} x {label}" if n > 1 else label, text) for (label, text), n in more.items())
-    rows = (*facts.items(), *alike)
+    rows = [*facts.items(), *alike]
     left, right, top = BINDING, size[0] - MARGIN, size[1] - MARGIN
     frame = complex(left, MARGIN), complex(right, MARGIN), complex(right, top), complex(left, top)
     _chain(board, FRAME, *frame, closed=True)
@@ -293,20 +293,8 @@ def finish(
     for number, line in enumerate(lines, start=1):
         place = complex(left + INSET, MARGIN + BLOCK[1] - pitch * number)
         _write(board, line, place, wide, height)
-    drawn = {
-        part: tuple(getattr(board, part))
-        for part in ("features", "hatches", "fills", "dimensions", "texts")
-    }
-    return Sheet(
-        name=name,
-        title=heading.title,
-        paper=board.paper,
-        size=size,
-        scale=board.scale,
-        corner=board.corner,
-        rows=rows,
-        **drawn,
-    )
+    drawn = {one.name: getattr(board, one.name) for one in fields(Sheet)}
+    return Sheet(**drawn | {"name": name, "title": heading.title, "rows": rows})
 
 
 def _wrapped(note: str, wide: float, height: float) -> list[str]:

@@ -21,9 +21,9 @@ from gearcam.parts.body import Hub, Part, ScrewHole
 from gearcam.parts.shafts import keyway_of
 from gearcam.parts.shapes import Circle, Loop, extremes
 from gearcam.pictures.drawings import box, part_features, place, placed
-from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board, Measure
-from gearcam.sheets.board import label_of as label
+from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board
 from gearcam.sheets.callouts import callouts, frames, turning_arrow
+from gearcam.sheets.dimensions import Measure, diameter_text
 from gearcam.sheets.paper import NO_VALUES, Heading, Values, begin, finish
 from gearcam.sheets.sheet import CENTERLINE, EDGE, HEIGHT, HIDDEN, Sheet, Text, fine
 from gearcam.sheets.symbols import datum, section_letters, section_line
@@ -163,7 +163,7 @@ def _front_sizes(board: Board, wheel: Wheel) -> None:
     left, low, right, high = extremes(wheel.points)
     floor, side = wheel.low.imag - BELOW * board.unit, wheel.low.real
     if wheel.round:
-        words = label(Circle(center=0j, diameter=(right - left).real))
+        words = diameter_text((right - left).real)
         board.measure([Measure(first=left, second=right, text=words)], floor)
         return
     across, up = [Measure(first=left, second=right)], [Measure(first=low, second=high)]
@@ -257,10 +257,10 @@ def _section_sizes(board: Board, wheel: Wheel, left: float) -> None:
     beside: list[Measure] = []
     fits = wheel.fits
     if wheel.bore and wheel.keyed is None:
-        words = label(Circle(center=0j, diameter=2.0 * wheel.radius))
+        words = diameter_text(2.0 * wheel.radius)
         beside.append(_upright(end, wheel.radius, fitted(words, fits.get("diameter"))))
     if part.hub is not None:
-        words = label(Circle(center=0j, diameter=hub.diameter))
+        words = diameter_text(hub.diameter)
         if hub.front:
             beside.append(_upright(end, 0.5 * hub.diameter, words))
         else:
@@ -287,7 +287,7 @@ def _bore_view(board: Board, wheel: Wheel, bore: Loop, left: float) -> None:
     unit, x, top, way = board.unit, left + wheel.radius, abs(middle), cmath.phase(middle)
     board.draw(EDGE, placed(bore, Pose(UP - way, x)))
     board.centre(Circle(center=complex(x), diameter=2.0 * max(radius, top)))
-    words = fitted(label(Circle(center=0j, diameter=2.0 * radius)), wheel.fits.get("diameter"))
+    words = fitted(diameter_text(2.0 * radius), wheel.fits.get("diameter"))
     ends = complex(x - radius), complex(x + radius)
     board.measure([Measure(first=ends[0], second=ends[1], text=words)], -radius)
     half = 0.5 * float(abs(floor[1] - floor[0]))

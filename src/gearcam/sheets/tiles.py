@@ -70,11 +70,11 @@ def tiles(drawing: Drawing, title: str) -> Iterator[Sheet]:
                 size=PAGE,
                 scale=1.0,
                 corner=corner,
-                features=(*drawing.features, *marks, *_ruler(corner + 10.0 + 11.0j)),
-                texts=(
+                features=[*drawing.features, *marks, *_ruler(corner + 10.0 + 11.0j)],
+                texts=[
                     Text(text=words, place=corner + 122.0 + 11.0j, squeeze=_fit(words, 78.0)),
                     Text(text="100 mm", place=corner + 60.0 + 15.0j, anchor="middle"),
-                ),
+                ],
             )
 
 

@@ -22,8 +22,8 @@ from gearcam.parts.body import Mark, Opening, Part
 from gearcam.parts.shapes import Circle, Loop
 from gearcam.pictures.drawings import OUTLINE, Drawing, Feature, Path, placed
 from gearcam.sheets import paper
-from gearcam.sheets.board import Board, Measure
-from gearcam.sheets.dimensions import leader
+from gearcam.sheets.board import Board
+from gearcam.sheets.dimensions import Measure, leader
 from gearcam.sheets.paper import Heading, Values, area_of, choose, scale_words, sheet_rows
 from gearcam.sheets.part import part_sheet
 from gearcam.sheets.sheet import Sheet, Text, fine, text_box, text_width
@@ -39,6 +39,11 @@ def part(radius: float, openings: tuple[Opening, ...] = (), width: float = 5.0) 
 
 def hole(x: float, y: float, diameter: float) -> Opening:
     return Opening(kind="HOLE", shape=Circle(center=complex(x, y), diameter=diameter), name="h")
+
+
+def empty() -> Board:
+    area = -50.0 - 50.0j, 50.0 + 50.0j
+    return Board(scale=1.0, paper="A4", size=(100.0, 100.0), corner=area[0], area=area)
 
 
 @pytest.mark.parametrize(
@@ -167,7 +172,7 @@ def test_what_has_no_room_goes_into_the_table() -> None:
 
 
 def test_narrow_dimensions_have_their_text_and_arrows_outside() -> None:
-    board = Board(scale=1.0, area=(-50.0 - 50.0j, 50.0 + 50.0j))
+    board = empty()
     pairs = [Measure(first=0.0, second=2.0), Measure(first=0.0, second=40.0)]
     board.measure(pairs, 0.0)
     narrow, wide = board.dimensions
@@ -178,13 +183,15 @@ def test_narrow_dimensions_have_their_text_and_arrows_outside() -> None:
 
 
 def test_a_size_that_follows_from_others_is_in_parentheses() -> None:
-    board = Board(scale=1.0, area=(-50.0 - 50.0j, 50.0 + 50.0j))
+    board = empty()
     board.measure([Measure(first=0.0, second=30.5, aside=True)], 0.0)
     assert board.dimensions[0].label == "(30.5)"
 
 
 def test_dimensions_know_their_values() -> None:
-    ring = leader(3.0 + 4.0j, 2.5, math.pi / 2, 6.0, "Ø5 max", "diameter", 1.0)
+    ring = leader(
+        Circle(center=3.0 + 4.0j, diameter=5.0), math.pi / 2, 6.0, "Ø5 max", "diameter", 1.0
+    )
     assert (ring.value, ring.label) == (5.0, "Ø5 max")
     assert ring.points == pytest.approx((3.0 + 1.5j, 3.0 + 6.5j))
     assert ring.heads[0][0] == pytest.approx(3.0 + 6.5j)

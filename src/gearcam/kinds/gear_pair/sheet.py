@@ -17,7 +17,8 @@ from gearcam.numeric.arrays import Plane, bounds
 from gearcam.numeric.contour import Contour
 from gearcam.parts.shapes import extremes, true_points
 from gearcam.pictures.drawings import CENTER, OUTLINE, Circle, Drawing, reach
-from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board, Measure
+from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board
+from gearcam.sheets.dimensions import Measure
 from gearcam.sheets.paper import Heading, begin, finish
 from gearcam.sheets.sheet import CENTERLINE, Sheet, fine
 
