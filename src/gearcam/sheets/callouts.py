@@ -44,7 +44,8 @@ def turning_arrow(board: Board, wheel: Wheel, turning: Sense) -> None:
     board.line(DIMENSION, *arc.tolist())
     tip = complex(arc[-1])
     board.arrow(tip, 1j * sense * tip / abs(tip))
-    board.label(complex(arc[9]), turning.words, ("rotation", turning.words))
+    words = f"turns {'' if turning.clockwise else 'counter-'}clockwise"
+    board.label(complex(arc[9]), words, ("rotation", words))
 
 
 def frames(board: Board, wheel: Wheel, heading: Heading, left: float) -> None:

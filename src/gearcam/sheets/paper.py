@@ -361,33 +361,19 @@ def _block(board: Board, heading: Heading, name: str, corner: complex) -> None:
     """Draw the title block of ISO 7200 upwards from its lower left corner."""
     notes, number = heading.notes, heading.number
     rows = [
-        [
-            ("part number", heading.part_number or name, 62.0),
-            ("revision", notes.revision, 18.0),
-            ("date of issue", notes.date, 30.0),
-            ("approved by", notes.approved_by, 40.0),
-            ("language", "en", 14.0),
-            ("sheet", "1/1", 16.0),
-        ],
-        [
-            ("title", heading.title, 80.0),
-            ("created by", notes.author, 40.0),
-            ("legal owner", notes.owner, 60.0),
-        ],
-        [
-            ("scale", scale_words(board.scale), 18.0),
-            ("projection", "", 24.0),
-            ("units", "mm, deg", 20.0),
-            ("paper", board.paper, 18.0),
-            ("general tolerances", notes.general_tolerances, 40.0),
-            ("document type", heading.kind, 60.0),
-        ],
-        [
-            ("material", notes.of("material", number), 80.0),
-            ("heat treatment", notes.of("heat_treatment", number), 64.0),
-            ("surface texture", "", 36.0),
-        ],
-    ]
+        [("part number", heading.part_number or name, 62.0), ("revision", notes.revision, 18.0),
+         ("date of issue", notes.date, 30.0), ("approved by", notes.approved_by, 40.0),
+         ("language", "en", 14.0), ("sheet", "1/1", 16.0)],
+        [("title", heading.title, 80.0), ("created by", notes.author, 40.0),
+         ("legal owner", notes.owner, 60.0)],
+        [("scale", scale_words(board.scale), 18.0), ("projection", "", 24.0),
+         ("units", "mm, deg", 20.0), ("paper", board.paper, 18.0),
+         ("general tolerances", notes.general_tolerances, 40.0),
+         ("document type", heading.kind, 60.0)],
+        [("material", notes.of("material", number), 80.0),
+         ("heat treatment", notes.of("heat_treatment", number), 64.0),
+         ("surface texture", "", 36.0)],
+    ]  # fmt: skip
     for up, cells in enumerate(rows):
         low = corner + 1j * CELLS * up
         for label, value, wide in cells:

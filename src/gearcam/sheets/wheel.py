@@ -10,7 +10,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Final
+from typing import Any, Final, cast
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Bevel, Opening, Part, ScrewHole
 from gearcam.parts.shapes import Circle, Loop, true_points
 from gearcam.pictures.drawings import BORE, HOLE, Drawing, placed
+from gearcam.sheets.dimensions import diameter_text
 from gearcam.sheets.sections import Section, crossings
 
 SAME: Final = 1e-6
@@ -37,11 +38,6 @@ class Sense:
 
     zero: float
     clockwise: bool
-
-    @property
-    def words(self) -> str:
-        """The sense of turning in words."""
-        return f"turns {'' if self.clockwise else 'counter-'}clockwise"
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -132,6 +128,11 @@ class Wheel:
         return self.bore.fits if self.bore else {}
 
     @property
+    def bore_text(self) -> str:
+        """Diameter of the bore with tolerance class and limits."""
+        return fitted(diameter_text(2.0 * self.radius), self.fits.get("diameter"))
+
+    @property
     def keyed(self) -> Loop | None:
         """The bore if it is not round."""
         shape = self.bore.shape if self.bore else None
@@ -152,28 +153,20 @@ class Wheel:
         even = np.linspace(self.low.real, self.high.real, _PLANES)[1:-1]
         tried = [one.center.real for one in holes_of(self.part)][:1] or even.tolist()
         edge, tolerance = self.part.contours[-1], self.part.tolerance
-
-        def metal(x: float) -> float:
-            return float(np.diff(crossings(edge, x, tolerance))[::2].sum())
-
-        return max(tried, key=metal)
+        return max(tried, key=lambda x: float(np.diff(crossings(edge, x, tolerance))[::2].sum()))
 
     @cached_property
     def section(self) -> Section:
         """What the plane cuts, a keyway or flat turned into it."""
         part = self.part
-        turned = {}
-        if self.keyed is not None and self.bore is not None:
-            middle = cmath.phase(complex(floor_of(self.keyed).mean()))
-            shape = placed(self.keyed, Pose(UP - middle))
-            turned[id(self.bore)] = replace(self.bore, shape=shape)
-        layers = [
-            replace(one, openings=tuple(turned.get(id(o), o) for o in one.openings))
-            for one in part.layers
-        ]
+        if self.keyed is not None:
+            turn = Pose(UP - cmath.phase(complex(floor_of(self.keyed).mean())))
+            turned = replace(cast("Opening", self.bore), shape=placed(self.keyed, turn))
+            others = (turned if one is self.bore else one for one in part.openings)
+            part = replace(part, openings=tuple(others))
         # chamfers are told in words; a set screw is turned into the plane
         pockets = [one for one in part.pockets if not isinstance(one, Bevel | ScrewHole)]
-        return Section(layers=layers, pockets=pockets, x=self.plane, tolerance=part.tolerance)
+        return Section(layers=part.layers, pockets=pockets, x=self.plane, tolerance=part.tolerance)
 
 
 def holes_of(part: Part) -> list[Circle]:
