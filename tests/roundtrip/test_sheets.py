@@ -48,7 +48,7 @@ STYLE = DxfStyle(tolerance=1e-3)
 R12 = DxfStyle(tolerance=1e-3, curves="lines", version="R12")
 FACTS = {"module": "5 mm", "teeth": "36", "pressure angle": "20 deg", "density": "7850 kg/m^3"}
 TITLE = 'Nägel & "Draht" <fast>'
-HEADING = Heading(title=TITLE, notes=DrawingSpec(), kind="assembly drawing", number=None)
+HEADING = Heading(title=TITLE, notes=DrawingSpec(), number=None)
 SPACE = {"s": "http://www.w3.org/2000/svg"}
 
 

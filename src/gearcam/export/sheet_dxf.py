@@ -137,8 +137,8 @@ def _dimension(space: Any, sheet: Sheet, one: SheetDimension, block: str) -> Non
         "actual_measurement": one.value,
     }  # fmt: skip
     if len(rest) == 2:
-        made |= {"defpoint2": rest[0], "defpoint3": rest[1]}
-        made["angle"] = 90.0 if one.kind == "vertical" else 0.0
+        turn = 90.0 if one.kind == "vertical" else 0.0
+        made |= {"defpoint2": rest[0], "defpoint3": rest[1], "angle": turn}
     else:
         made["defpoint4"] = rest[0]
     space.new_entity("DIMENSION", made)

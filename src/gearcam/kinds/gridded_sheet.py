@@ -19,7 +19,7 @@ from gearcam.pictures.drawings import Drawing, box, place
 from gearcam.sheets.paper import Heading, Values, sheet_rows
 from gearcam.sheets.part import part_sheet
 from gearcam.sheets.sections import mesh_loops
-from gearcam.sheets.wheel import Sense, Unrolled
+from gearcam.sheets.wheel import Sense, Unrolled, check_runout
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -83,19 +83,14 @@ def cam_sheet(
         shape = Circle(center=0j, diameter=bore) if bore else None
         openings = (Opening(kind="BORE", shape=shape, name="bore"),) if shape else ()
         part = Part(name=STEM, contours=(outline,), width=length, openings=openings)
-    mesh = _mesh(result)
-    loops = [loop - base for loop in mesh_loops(mesh)]
+    check_runout(design.drawing, [part])
+    loops = [loop - base for loop in mesh_loops(_mesh(result))]
     low, _ = box(drawing.features)
     unrolled = replace(drawing, features=place(drawing.features, Pose(0.0, -low)))
     theta = np.arange(0.0, 360.0, _TABLE)
     name, values = column
-    places = values(np.radians(theta)).tolist()
-    table = [(decimal(a), decimal(p)) for a, p in zip(theta.tolist(), places, strict=True)]
-    if design.drawing.runout and not design.blank.bore:
-        from gearcam.base.errors import InfeasibleError
-
-        what = "run-out is about a bore, and the cam has none"
-        raise InfeasibleError(what, where="drawing.runout_mm", nearest="blank.bore_diameter_mm")
+    places = zip(theta.tolist(), values(np.radians(theta)).tolist(), strict=True)
+    table = [(decimal(angle), decimal(value)) for angle, value in places]
     return part_sheet(
         part,
         sheet_rows(result.facts, rows),

@@ -72,7 +72,6 @@ class Board(Sheet):
         Area for the texts of the views, lower left and upper right corner.
     """
 
-    name: str = ""
     title: str = ""
     area: Box
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from gearcam.base.numerals import decimal
 from gearcam.parts.body import Part
-from gearcam.parts.shapes import Circle, Loop
+from gearcam.parts.shapes import Circle, Loop, true_points
 from gearcam.pictures.drawings import SLOT
 from gearcam.sheets.board import OVERHANG, Board
 from gearcam.sheets.dimensions import diameter_text
@@ -81,10 +81,12 @@ def callouts(board: Board, wheel: Wheel, side: float) -> None:
 
 def _radii(board: Board, wheel: Wheel) -> None:
     """Draw the largest and the smallest radius of the teeth from the axis."""
-    reach = np.abs(wheel.toothed)
+    # of a ring those of its inner edge
+    teeth = true_points(wheel.part.inner[-1:]) if wheel.part.inner else wheel.points
+    reach = np.abs(teeth)
     for radius, word in ((float(reach.max()), "max"), (float(reach.min()), "min")):
         # the first of the points on an arc about the axis, not one that rounding chooses
-        point = complex(wheel.toothed[np.argmax(np.abs(reach - radius) < SAME)])
+        point = complex(teeth[np.argmax(np.abs(reach - radius) < SAME)])
         circle, words = Circle(center=0j, diameter=2.0 * radius), f"R{decimal(radius)} {word}"
         if not board.callout(circle, words, "radius", angles=np.array([cmath.phase(point)])):
             # a leader without direction to the axis

@@ -36,7 +36,7 @@ SHELF: Final = HEIGHT + GAP
 """Height of a text with the line below it, mm of paper."""
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False)
 class Measure:
     """A length along x or y, from `first` to `second`, complex, mm.
 

@@ -50,10 +50,7 @@ HEAVY: Final = (
 )  # fmt: skip
 """Layers drawn with wide lines."""
 
-PATTERNS: Final = {
-    "ACAD_ISO02W100": (12.0, 3.0),
-    "ACAD_ISO04W100": (24.0, 3.0, 0.5, 3.0),
-}
+PATTERNS: Final = {"ACAD_ISO02W100": (12.0, 3.0), "ACAD_ISO04W100": (24.0, 3.0, 0.5, 3.0)}
 """Dashed and long-dashed dotted lines: dashes and gaps, in widths of the line."""
 
 _DASHED, _CHAIN = PATTERNS

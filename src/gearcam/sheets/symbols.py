@@ -47,11 +47,8 @@ def _box(board: Board, low: complex, *cells: str) -> None:
     unit = board.unit
     for text in cells:
         wide = max(FRAME, text_width(text) + 2.0) if text else FRAME
-        high = low + complex(wide, FRAME) * unit
-        board.line(
-            DIMENSION, low, complex(high.real, low.imag), high, complex(low.real, high.imag),
-            closed=True,
-        )  # fmt: skip
+        corners = (low + unit * at for at in (0.0, wide, complex(wide, FRAME), 1j * FRAME))
+        board.line(DIMENSION, *corners, closed=True)
         if text:
             place = low + complex(0.5 * wide, 0.5 * (FRAME - HEIGHT)) * unit
             board.write(Text(text=text, place=place, anchor="middle"))

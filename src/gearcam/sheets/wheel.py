@@ -14,6 +14,7 @@ from typing import Any, Final, cast
 
 import numpy as np
 
+from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import decimal
 from gearcam.numeric.arrays import Plane, bounds
 from gearcam.numeric.pose import Pose
@@ -22,6 +23,7 @@ from gearcam.parts.shapes import Circle, Loop, true_points
 from gearcam.pictures.drawings import BORE, HOLE, Drawing, placed
 from gearcam.sheets.dimensions import diameter_text
 from gearcam.sheets.sections import Section, crossings
+from gearcam.sheets.spec import DrawingNotes
 
 SAME: Final = 1e-6
 """Sizes, mm, and angles, rad, that differ by less are equal."""
@@ -76,11 +78,6 @@ class Wheel:
     def points(self) -> Plane:
         """Points of the outline."""
         return true_points(self.part.contours[-1:])
-
-    @cached_property
-    def toothed(self) -> Plane:
-        """Points of the teeth: of a ring those of its inner edge."""
-        return true_points(self.part.inner[-1:]) if self.part.inner else self.points
 
     @cached_property
     def low(self) -> complex:
@@ -167,6 +164,13 @@ class Wheel:
         # chamfers are told in words; a set screw is turned into the plane
         pockets = [one for one in part.pockets if not isinstance(one, Bevel | ScrewHole)]
         return Section(layers=part.layers, pockets=pockets, x=self.plane, tolerance=part.tolerance)
+
+
+def check_runout(notes: DrawingNotes, parts: Sequence[Part]) -> None:
+    """Refuse (`InfeasibleError`) run-out in `notes` if none of the `parts` has a bore."""
+    if notes.runout and not any(one.kind == BORE for part in parts for one in part.openings):
+        what = "run-out is about a bore, and no part has one"
+        raise InfeasibleError(what, where="drawing.runout_mm", nearest="blank.bore_diameter_mm")
 
 
 def holes_of(part: Part) -> list[Circle]:

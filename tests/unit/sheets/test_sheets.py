@@ -20,7 +20,7 @@ from gearcam.kinds.gear_pair.sheet import pair_sheet
 from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Mark, Opening, Part
 from gearcam.parts.shapes import Circle, Loop
-from gearcam.pictures.drawings import OUTLINE, Drawing, Feature, Path, placed
+from gearcam.pictures.drawings import OUTLINE, Drawing, Path, placed
 from gearcam.sheets import paper
 from gearcam.sheets.board import Board
 from gearcam.sheets.dimensions import Measure, leader
@@ -43,7 +43,7 @@ def hole(x: float, y: float, diameter: float) -> Opening:
 
 def empty() -> Board:
     area = -50.0 - 50.0j, 50.0 + 50.0j
-    return Board(scale=1.0, paper="A4", size=(100.0, 100.0), corner=area[0], area=area)
+    return Board(name="b", scale=1.0, paper="A4", size=(100.0, 100.0), corner=area[0], area=area)
 
 
 @pytest.mark.parametrize(
@@ -173,7 +173,7 @@ def test_what_has_no_room_goes_into_the_table() -> None:
 
 def test_narrow_dimensions_have_their_text_and_arrows_outside() -> None:
     board = empty()
-    pairs = [Measure(first=0.0, second=2.0), Measure(first=0.0, second=40.0)]
+    pairs = [Measure(0.0, 2.0), Measure(0.0, 40.0)]
     board.measure(pairs, 0.0)
     narrow, wide = board.dimensions
     assert text_box(narrow.text, 1.0)[0].real > 40.0  # beyond what crosses it
@@ -184,7 +184,7 @@ def test_narrow_dimensions_have_their_text_and_arrows_outside() -> None:
 
 def test_a_size_that_follows_from_others_is_in_parentheses() -> None:
     board = empty()
-    board.measure([Measure(first=0.0, second=30.5, aside=True)], 0.0)
+    board.measure([Measure(0.0, 30.5, aside=True)], 0.0)
     assert board.dimensions[0].label == "(30.5)"
 
 
@@ -309,12 +309,6 @@ def test_the_shaft_of_an_open_ring_may_lie_beside_its_outline() -> None:
     assert sheet.corner.real < height.points[0].real < -60.0
     lines = [one.shape for one in sheet.features if one.layer == "CENTERLINE"]
     assert min(line.points.real.min() for line in lines if isinstance(line, Path)) < -60.0
-
-
-def test_nothing_is_not_drawn() -> None:
-    mark = Feature(layer="MARK", shape=Circle(center=0j, diameter=1.0))
-    with pytest.raises(ValueError, match="nothing to draw"):
-        pair_sheet(Drawing(name="empty", features=(mark,)), 60.0, {}, heading(), pitch_radius=30.0)
 
 
 def test_every_row_of_a_sheet_is_a_fact_of_some_design(monkeypatch: pytest.MonkeyPatch) -> None:
