@@ -21,16 +21,7 @@ import numpy as np
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane, as_pairs, lengths_along
 from gearcam.pictures.drawings import Circle, Feature, Path, Shape, chains
 from gearcam.sheets.dimensions import SHELF, UPRIGHT, Measure, arrow_head, leader, linear
-from gearcam.sheets.sheet import (
-    CENTERLINE,
-    Box,
-    Hatch,
-    Sheet,
-    SheetDimension,
-    Text,
-    text_box,
-    text_width,
-)
+from gearcam.sheets.sheet import CENTERLINE, Box, Hatch, Sheet, SheetDimension, Text, text_width
 
 CELL: Final = 0.5
 """Cell size of the grids, mm of paper."""
@@ -68,6 +59,8 @@ class Board(Sheet):
 
     Parameters
     ----------
+    title : str
+        Empty until it is finished.
     area : complex, complex, mm of the part
         Area for the texts of the views, lower left and upper right corner.
     """
@@ -112,12 +105,12 @@ class Board(Sheet):
     def write(self, text: Text) -> None:
         """Write a text at its place."""
         self.texts.append(text)
-        self._take(*text_box(text, self.unit))
+        self._take(*text.box(self.unit))
 
     def first_free(self, texts: Iterable[Text]) -> None:
         """Write the first of several `texts` that has space, or else the first."""
         given = list(texts)
-        boxes = [text_box(one, self.unit) for one in given]
+        boxes = [one.box(self.unit) for one in given]
         free = self._empty(np.array([low for low, _ in boxes]), np.array([b for _, b in boxes]))
         self.write(given[int(np.argmax(free))])
 
@@ -147,7 +140,7 @@ class Board(Sheet):
         self.dimensions.append(dimension)
         for line in dimension.lines:
             self._ink(line)
-        self._take(*text_box(dimension.text, self.unit))
+        self._take(*dimension.text.box(self.unit))
 
     def callout(
         self,
@@ -187,7 +180,7 @@ class Board(Sheet):
         return found is not None
 
     def label(self, point: complex, text: str, row: tuple[str, str] | None = None) -> bool:
-        """Draw a `text` with a leader to a `point`, mm (see `callout`)."""
+        """Return whether a `text` with a leader to a `point`, mm, is drawn (see `callout`)."""
         spot = Circle(center=point, diameter=0.02 * self.unit)
         return self.callout(spot, text, "label", row=row)
 

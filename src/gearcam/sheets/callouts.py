@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.numerals import decimal
-from gearcam.parts.body import Part
+from gearcam.parts.body import Part, ScrewHole
 from gearcam.parts.shapes import Circle, Loop, true_points
 from gearcam.pictures.drawings import SLOT
 from gearcam.sheets.board import OVERHANG, Board
@@ -23,7 +23,7 @@ from gearcam.sheets.dimensions import diameter_text
 from gearcam.sheets.paper import Heading
 from gearcam.sheets.sheet import CENTERLINE, DIMENSION, fine
 from gearcam.sheets.symbols import frame
-from gearcam.sheets.wheel import SAME, Sense, Wheel, holes_of, thread
+from gearcam.sheets.wheel import SAME, Sense, Wheel, holes_of
 
 _NEAR: Final = 0.1
 """Angle to both sides of theta = 0 at which the outline is looked at, rad."""
@@ -162,3 +162,8 @@ def _slot(board: Board, shape: Loop) -> None:
     board.callout(end, words, "radius", row=("slot, width", decimal(width)))
     board.rows.append(("slot, mid radius", decimal(middle)))
     board.rows.append(("slot, ends at", f"{decimal(first)}, {decimal(last)} deg"))
+
+
+def thread(screw: ScrewHole) -> str:
+    """Return the thread of a set screw in words."""
+    return f"set screw M{decimal(screw.size)}"

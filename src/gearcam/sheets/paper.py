@@ -21,17 +21,7 @@ from gearcam.base.facts import Facts, NamedFact
 from gearcam.base.numerals import formatted
 from gearcam.parts.shapes import Circle
 from gearcam.sheets.board import Board
-from gearcam.sheets.sheet import (
-    DIMENSION,
-    FRAME,
-    HEIGHT,
-    RULE,
-    SERIES,
-    Box,
-    Sheet,
-    Text,
-    text_width,
-)
+from gearcam.sheets.sheet import DIMENSION, FRAME, HEIGHT, RULE, SERIES, Sheet, Text, text_width
 from gearcam.sheets.spec import DrawingNotes
 
 PAPERS: Final = {"A4": (297.0, 210.0), "A3": (420.0, 297.0), "A2": (594.0, 420.0)}
@@ -128,7 +118,7 @@ def scale_words(scale: float) -> str:
     return f"{formatted(scale)}:1" if scale >= 1.0 else f"1:{formatted(1.0 / scale)}"
 
 
-def area_of(paper: str) -> Box:
+def area_of(paper: str) -> tuple[complex, complex]:
     """Return the corners of the views' area on a `paper`, mm of paper."""
     wide, tall = PAPERS[paper]
     low = complex(BINDING + PAD, MARGIN + BLOCK[1] + PAD)
@@ -200,7 +190,14 @@ def _row_text(fact: NamedFact) -> str:
     return f"{formatted(value)} {unit}".rstrip() if isinstance(value, float) else fact.text
 
 
-def begin(name: str, size: complex, room: Box, low: complex, rows: int, wide: float = 0.0) -> Board:
+def begin(
+    name: str,
+    size: complex,
+    room: tuple[complex, complex],
+    low: complex,
+    rows: int,
+    wide: float = 0,
+) -> Board:
     """Return an empty sheet with the views centred in their area.
 
     Parameters
@@ -216,7 +213,7 @@ def begin(name: str, size: complex, room: Box, low: complex, rows: int, wide: fl
     rows : int
         Number of rows of the tables.
     wide : float, mm
-        Width of a view that stands below the others.
+        Width of a view that stands below the others; 0 without one.
 
     Returns
     -------

@@ -22,23 +22,12 @@ from gearcam.parts.shafts import keyway_of
 from gearcam.parts.shapes import Circle, Loop, extremes
 from gearcam.pictures.drawings import box, part_features, place, placed
 from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board
-from gearcam.sheets.callouts import callouts, frames, turning_arrow
+from gearcam.sheets.callouts import callouts, frames, thread, turning_arrow
 from gearcam.sheets.dimensions import Measure, diameter_text
 from gearcam.sheets.paper import NO_VALUES, Heading, Values, begin, finish
 from gearcam.sheets.sheet import CENTERLINE, EDGE, HEIGHT, HIDDEN, Sheet, Text, fine
 from gearcam.sheets.symbols import datum, section_letters, section_line
-from gearcam.sheets.wheel import (
-    BORES,
-    SAME,
-    UP,
-    Sense,
-    Unrolled,
-    Wheel,
-    fitted,
-    floor_of,
-    holes_of,
-    thread,
-)
+from gearcam.sheets.wheel import SAME, UP, Sense, Unrolled, Wheel, fitted, floor_of, holes_of
 
 LEFT: Final = 24.0
 BETWEEN: Final = 34.0
@@ -202,7 +191,7 @@ def _unrolled(board: Board, unrolled: Unrolled, high: complex) -> None:
 
 def _corner(board: Board, wheel: Wheel, bore: Loop, left: float, end: float) -> None:
     """Draw the edge where the side of a keyway, or a flat, meets the bore behind the plane."""
-    floor = floor_of(bore)
+    _, floor = floor_of(bore)
     y = math.sqrt(max(wheel.radius**2 - 0.25 * float(abs(floor[1] - floor[0])) ** 2, 0.0))
     if y < abs(floor.mean()) - SAME:
         board.line(EDGE, complex(left, y), complex(end, y))
@@ -251,7 +240,7 @@ def _upright(x: float, radius: float, words: str) -> Measure:
 
 def _bore_view(board: Board, wheel: Wheel, bore: Loop, left: float) -> None:
     """Draw a bore to the right of x = `left`, with its keyway or flat at the top."""
-    floor, kind = floor_of(bore), BORES[len(bore.points)]
+    kind, floor = floor_of(bore)
     radius, middle = wheel.radius, complex(floor.mean())
     unit, x, top, way = board.unit, left + wheel.radius, abs(middle), cmath.phase(middle)
     board.draw(EDGE, placed(bore, Pose(UP - way, x)))

@@ -134,6 +134,26 @@ class Text(ShortRepr):
         """Its width, mm of paper."""
         return self.squeeze * text_width(self.text, self.height)
 
+    def box(self, unit: float) -> Box:
+        """Return its bounding box with descenders.
+
+        Parameters
+        ----------
+        unit : float
+            Millimetres of the part in a millimetre of paper.
+
+        Returns
+        -------
+        complex, complex, mm of the part
+            Lower left and upper right corner.
+        """
+        wide, tall = self.width, self.height
+        start = -0.5 * wide if self.anchor == "middle" else 0.0
+        low, high = complex(start, -0.25 * tall), complex(start + wide, tall)
+        if self.upright:
+            low, high = complex(-tall, start), complex(0.25 * tall, start + wide)
+        return self.place + unit * low, self.place + unit * high
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SheetDimension(ShortRepr):
@@ -297,26 +317,3 @@ class Sheet(ShortRepr):
 
 HATCHED: Final = 2.0
 """Distance of the lines of a hatch, mm of paper."""
-
-
-def text_box(text: Text, unit: float) -> Box:
-    """Return the bounding box of a text.
-
-    Parameters
-    ----------
-    text : Text
-        A line of text.
-    unit : float
-        Millimetres of the part in a millimetre of paper.
-
-    Returns
-    -------
-    complex, complex, mm of the part
-        Its lower left and upper right corner, with descenders.
-    """
-    wide, tall = text.width, text.height
-    start = -0.5 * wide if text.anchor == "middle" else 0.0
-    low, high = complex(start, -0.25 * tall), complex(start + wide, tall)
-    if text.upright:
-        low, high = complex(-tall, start), complex(0.25 * tall, start + wide)
-    return text.place + unit * low, text.place + unit * high

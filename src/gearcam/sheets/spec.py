@@ -21,7 +21,7 @@ _LONGEST: Final = 60
 _SURFACE: Final = re.compile(r"R[az] \d+(\.\d+)?")
 
 
-def _text(example: str, doc: str, *, both: bool = False) -> Any:
+def _text(*, example: str, doc: str, both: bool = False) -> Any:
     return param(TEXT, default=None, example=example, doc=doc, both=both)
 
 
@@ -30,7 +30,7 @@ _MATERIAL: Final = "material, as it is ordered"
 _TREATMENT: Final = "heat treatment"
 
 
-def _tolerance(example: float, doc: str) -> Any:
+def _tolerance(*, example: float, doc: str) -> Any:
     return param(LENGTH, default=None, gt=0, le=10, example=example, doc=doc)
 
 
@@ -38,21 +38,23 @@ def _tolerance(example: float, doc: str) -> Any:
 class DrawingNotes(ShortRepr):
     """What all workshop drawings of a design say: tolerances, who and when."""
 
-    surface: str | None = _text("Ra 1.6", "surface texture all over, such as Ra 1.6")
-    general_tolerances: str | None = _text("ISO 2768-mK", "tolerances of sizes without their own")
+    surface: str | None = _text(example="Ra 1.6", doc="surface texture all over, such as Ra 1.6")
+    general_tolerances: str | None = _text(
+        example="ISO 2768-mK", doc="tolerances of sizes without their own"
+    )
     runout: float | None = _tolerance(
-        0.03,
-        "circular run-out about the bore, the datum A: of the outside if it is round, else of "
+        example=0.03,
+        doc="circular run-out about the bore, the datum A: of the outside if it is round, else of "
         "the face",
     )
     profile_tolerance: float | None = _tolerance(
-        0.02, "tolerance of the form of the outline or groove"
+        example=0.02, doc="tolerance of the form of the outline or groove"
     )
-    revision: str | None = _text("B", "revision index")
-    author: str | None = _text("A. Maker", "who made the drawing")
-    approved_by: str | None = _text("B. Checker", "who approved it")
-    owner: str | None = _text("Example Works", "legal owner of the drawing")
-    date: str | None = _text("2030-01-31", "date of issue; no date if left out")
+    revision: str | None = _text(example="B", doc="revision index")
+    author: str | None = _text(example="A. Maker", doc="who made the drawing")
+    approved_by: str | None = _text(example="B. Checker", doc="who approved it")
+    owner: str | None = _text(example="Example Works", doc="legal owner of the drawing")
+    date: str | None = _text(example="2030-01-31", doc="date of issue; no date if left out")
 
     def problems(self) -> Iterator[Breach]:
         """Yield texts that a drawing cannot show: field, index, message, allowed."""
@@ -87,9 +89,9 @@ class DrawingSpec(DrawingNotes):
     DrawingSpec(general_tolerances='ISO 2768-mK', material='C45E')
     """
 
-    part_number: str | None = _text("G-1024", _NUMBER)
-    material: str | None = _text("C45E", _MATERIAL)
-    heat_treatment: str | None = _text("hardened, 50 to 54 HRC", _TREATMENT)
+    part_number: str | None = _text(example="G-1024", doc=_NUMBER)
+    material: str | None = _text(example="C45E", doc=_MATERIAL)
+    heat_treatment: str | None = _text(example="hardened, 50 to 54 HRC", doc=_TREATMENT)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -103,9 +105,11 @@ class PairDrawingSpec(DrawingNotes):
     PairDrawingSpec(material=('C45E', 'POM'))
     """
 
-    part_number: tuple[str, str] | None = _text("G-1024", _NUMBER, both=True)
-    material: tuple[str, str] | None = _text("C45E", _MATERIAL, both=True)
-    heat_treatment: tuple[str, str] | None = _text("hardened, 50 to 54 HRC", _TREATMENT, both=True)
+    part_number: tuple[str, str] | None = _text(example="G-1024", doc=_NUMBER, both=True)
+    material: tuple[str, str] | None = _text(example="C45E", doc=_MATERIAL, both=True)
+    heat_treatment: tuple[str, str] | None = _text(
+        example="hardened, 50 to 54 HRC", doc=_TREATMENT, both=True
+    )
 
 
 def _is_date(text: str) -> bool:

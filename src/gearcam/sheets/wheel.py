@@ -157,7 +157,7 @@ class Wheel:
         """What the plane cuts, a keyway or flat turned into it."""
         part = self.part
         if self.keyed is not None:
-            turn = Pose(UP - cmath.phase(complex(floor_of(self.keyed).mean())))
+            turn = Pose(UP - cmath.phase(complex(floor_of(self.keyed)[1].mean())))
             turned = replace(cast("Opening", self.bore), shape=placed(self.keyed, turn))
             others = (turned if one is self.bore else one for one in part.openings)
             part = replace(part, openings=tuple(others))
@@ -167,7 +167,20 @@ class Wheel:
 
 
 def check_runout(notes: DrawingNotes, parts: Sequence[Part]) -> None:
-    """Refuse (`InfeasibleError`) run-out in `notes` if none of the `parts` has a bore."""
+    """Refuse run-out in the `notes` of a drawing without a bore.
+
+    Parameters
+    ----------
+    notes : DrawingNotes
+        What the drawing says.
+    parts : sequence of Part
+        What it shows.
+
+    Raises
+    ------
+    InfeasibleError
+        If none of them has a bore.
+    """
     if notes.runout and not any(one.kind == BORE for part in parts for one in part.openings):
         what = "run-out is about a bore, and no part has one"
         raise InfeasibleError(what, where="drawing.runout_mm", nearest="blank.bore_diameter_mm")
@@ -179,13 +192,14 @@ def holes_of(part: Part) -> list[Circle]:
     return [one for one in shapes if isinstance(one, Circle)]
 
 
-BORES: Final = {3: "flat", 4: "flats", 5: "keyway"}
-"""What a bore that is not round has, by the corners of its loop."""
+BORES: Final = {3: ("flat", [0, -1]), 4: ("flats", [0, 1]), 5: ("keyway", [-2, -1])}
+"""What a bore that is not round has, and where its floor ends, by the corners of its loop."""
 
 
-def floor_of(keyed: Loop) -> Plane:
-    """Return both ends of the floor of a keyway, or of the first flat."""
-    return keyed.points[{3: [0, -1], 4: [0, 1], 5: [-2, -1]}[len(keyed.points)]]
+def floor_of(keyed: Loop) -> tuple[str, Plane]:
+    """Return what a `keyed` bore has, and both ends of the floor of it, or of its first flat."""
+    kind, ends = BORES[len(keyed.points)]
+    return kind, keyed.points[ends]
 
 
 def fitted(words: str, fit: Any) -> str:
@@ -196,8 +210,3 @@ def fitted(words: str, fit: Any) -> str:
     if fit.lower != -fit.upper:
         limits = "/".join(f"{'+' * (one > 0)}{decimal(one)}" for one in (fit.upper, fit.lower))
     return f"{words} {fit.tolerance_class} ({limits})"
-
-
-def thread(screw: ScrewHole) -> str:
-    """Return the thread of a set screw in words."""
-    return f"set screw M{decimal(screw.size)}"

@@ -26,7 +26,7 @@ from gearcam.sheets.board import Board
 from gearcam.sheets.dimensions import Measure, leader
 from gearcam.sheets.paper import Heading, Values, area_of, choose, scale_words, sheet_rows
 from gearcam.sheets.part import part_sheet
-from gearcam.sheets.sheet import Sheet, Text, fine, text_box, text_width
+from gearcam.sheets.sheet import Sheet, Text, fine, text_width
 from gearcam.sheets.spec import DrawingSpec
 from helpers_contour import disc_contour, gear_contour, square_contour
 from helpers_sheets import faults, heading, sheet_of
@@ -176,7 +176,7 @@ def test_narrow_dimensions_have_their_text_and_arrows_outside() -> None:
     pairs = [Measure(0.0, 2.0), Measure(0.0, 40.0)]
     board.measure(pairs, 0.0)
     narrow, wide = board.dimensions
-    assert text_box(narrow.text, 1.0)[0].real > 40.0  # beyond what crosses it
+    assert narrow.text.box(1.0)[0].real > 40.0  # beyond what crosses it
     assert narrow.heads[0][1].real < 0.0
     assert wide.text.place == pytest.approx(20.0 + 1j * (-19.0 + 0.8))
     assert wide.heads[0][1].real > 0.0
@@ -198,7 +198,7 @@ def test_dimensions_know_their_values() -> None:
 
 
 def test_upright_texts_have_upright_boxes() -> None:
-    low, high = text_box(Text(text="abcd", place=0j, upright=True), 1.0)
+    low, high = Text(text="abcd", place=0j, upright=True).box(1.0)
     assert (high - low).imag > (high - low).real
 
 

@@ -98,7 +98,7 @@ def pair_sheet(
     low, high = bounds(np.append(points, shafts))
     below = FIRST_LEVEL + LEVEL * LEVELS
     room = complex(LEFT, below), complex(RIGHT, ABOVE)
-    board = begin(drawing.name, high - low, room, low, len(facts) + 2)
+    board = begin(drawing.name, high - low, room, low, len(facts) + 2, 0.0)
     _views(board, drawing, outlines, shafts)
     left, lowest, right, highest = extremes(points)
     across = [Measure(0.0, pitch_radius), Measure(left, right)]
