@@ -83,16 +83,13 @@ def part_sheet(
     below = BELOW + FIRST_LEVEL + LEVEL * levels
     across = BETWEEN + RIGHT + (BORE_ROOM if wheel.keyed else 0.0)
     rows = len(facts) + len(part.openings) + 2 + values.tall
-    low, wide = wheel.low, 0.0
-    if unrolled is not None:
-        outside = box(unrolled.drawing.features)[1]
-        size, low, wide = size + 1j * outside.imag, low - 1j * outside.imag, outside.real
-        below += UNROLLED
-    board = begin(part.name, size, (complex(LEFT, below), complex(across, ABOVE)), low, rows, wide)
+    outside = box(unrolled.drawing.features)[1] if unrolled else 0j
+    room = complex(LEFT, below + (UNROLLED if unrolled else 0.0)), complex(across, ABOVE)
+    tall = 1j * outside.imag
+    board = begin(part.name, size + tall, room, wheel.low - tall, rows, outside.real)
     side = wheel.high.real + BETWEEN * board.unit
     if unrolled is not None:
-        under = below - UNROLLED + 10.0
-        _unrolled(board, unrolled, wheel.low - 1j * under * board.unit)
+        _unrolled(board, unrolled, wheel.low - 1j * (below + 10.0) * board.unit)
     _front_view(board, wheel)
     _section(board, wheel, side)
     if wheel.keyed is not None:

@@ -25,9 +25,6 @@ from gearcam.parts.shapes import Circle
 
 _NONE: Final = np.empty(0)
 
-Line = tuple[complex, complex]
-"""Two points of a section, z and y, mm."""
-
 
 def crossings(edge: Edge, x: float, tolerance: float) -> Array:
     """Return where an `edge`, with chords within a `tolerance`, crosses the plane at `x`: y, mm."""
@@ -98,8 +95,8 @@ class Section:
         ]
 
     @property
-    def lines(self) -> Iterator[Line]:
-        """All visible edges."""
+    def lines(self) -> Iterator[tuple[complex, complex]]:
+        """All visible edges, from point to point, z and y, mm."""
         for (low, high), (ends, extent) in zip(pairwise(self.heights), self.slabs, strict=True):
             for y in np.union1d(ends, extent).tolist():
                 yield low + 1j * y, high + 1j * y
