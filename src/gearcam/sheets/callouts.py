@@ -35,12 +35,10 @@ def turning_arrow(board: Board, wheel: Wheel, turning: Sense) -> None:
     reach = float(ahead.real[np.abs(np.angle(ahead)) < _NEAR].max())
     end = cmath.rect(reach + 8.0 * board.unit, turning.zero)
     board.line(CENTERLINE, 0j, end)
-    row = "theta = 0 at", f"{decimal(math.degrees(turning.zero))} deg"
-    board.label(end, "theta = 0", row)
+    board.label(end, "theta = 0", ("theta = 0 at", f"{decimal(math.degrees(turning.zero))} deg"))
     radius = 0.5 * (wheel.radius + float(np.abs(wheel.points).min()))
     sense = -1.0 if turning.clockwise else 1.0
-    angles = turning.zero + sense * np.linspace(0.3, 1.2, 19)
-    arc = radius * np.exp(1j * angles)
+    arc = radius * np.exp(1j * (turning.zero + sense * np.linspace(0.3, 1.2, 19)))
     board.line(DIMENSION, *arc.tolist())
     tip = complex(arc[-1])
     board.arrow(tip, 1j * sense * tip / abs(tip))
@@ -150,7 +148,7 @@ def _pattern(board: Board, circles: list[Circle]) -> None:
 
 
 def _slot(board: Board, shape: Loop) -> None:
-    """SheetDimension a slot along an arc about the axis: width, mean radius and end angles."""
+    """Say of a slot along an arc about the axis: width, mean radius and end angles."""
     corners = shape.points
     half = len(corners) // 2
     radii = np.abs(corners[[0, half]])
