@@ -173,13 +173,12 @@ def _text(space: BaseLayout, sheet: Sheet, text: Text, layer: str, old: bool) ->
     if old:
         escaped = (_SYMBOLS.get(c, c if c.isascii() else f"\\U+{ord(c):04X}") for c in words)
         words = "".join(escaped)
-    made = space.add_text(
+    space.add_text(
         words,
         height=text.height * sheet.unit,
         rotation=90.0 if text.upright else 0.0,
         dxfattribs={"layer": layer, "style": STYLE, "width": text.squeeze},
-    )
-    made.set_placement(_place(text.place), align=align)
+    ).set_placement(_place(text.place), align=align)
 
 
 def _place(point: complex) -> tuple[float, float]:

@@ -5,13 +5,15 @@ The outside is seen from outside, with the azimuth in the cam's frame from left 
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
 from gearcam.base.numerals import decimal
-from gearcam.kinds.gridded import STEM
+from gearcam.kinds.gridded import STEM, GriddedCam
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Opening, Part
 from gearcam.parts.shapes import Circle
@@ -19,15 +21,8 @@ from gearcam.pictures.drawings import Drawing, box, place
 from gearcam.sheets.paper import Heading, Values, sheet_rows
 from gearcam.sheets.part import part_sheet
 from gearcam.sheets.sections import mesh_loops
+from gearcam.sheets.sheet import Sheet
 from gearcam.sheets.wheel import Sense, Unrolled, check_runout
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from gearcam.kinds.gridded import GriddedCam
-    from gearcam.numeric.arrays import Array
-    from gearcam.numeric.mesh import Mesh
-    from gearcam.sheets.sheet import Sheet
 
 _STEPS: Final = 360
 _PLACES: Final = 5
@@ -84,13 +79,15 @@ def cam_sheet(
         openings = (Opening(kind="BORE", shape=shape, name="bore"),) if shape else ()
         part = Part(name=STEM, contours=(outline,), width=length, openings=openings)
     check_runout(design.drawing, [part])
-    loops = [loop - base for loop in mesh_loops(_mesh(result))]
+    steps, places = min(result.solid_steps, _STEPS), min(design.output.wall_points, _PLACES)
+    mesh = result.mesh if result.carved else result.mesh_of(steps, places)
+    loops = [loop - base for loop in mesh_loops(mesh)]
     low, _ = box(drawing.features)
     unrolled = replace(drawing, features=place(drawing.features, Pose(0.0, -low)))
     theta = np.arange(0.0, 360.0, _TABLE)
     name, values = column
-    places = zip(theta.tolist(), values(np.radians(theta)).tolist(), strict=True)
-    table = [(decimal(angle), decimal(value)) for angle, value in places]
+    tabled = zip(theta.tolist(), values(np.radians(theta)).tolist(), strict=True)
+    table = [(decimal(angle), decimal(value)) for angle, value in tabled]
     return part_sheet(
         part,
         sheet_rows(result.facts, rows),
@@ -99,10 +96,3 @@ def cam_sheet(
         values=Values(title=("theta, deg", name), rows=table),
         unrolled=Unrolled(loops=loops, drawing=unrolled, title=texts[0], note=texts[1]),
     )
-
-
-def _mesh(result: GriddedCam) -> Mesh:
-    if result.carved:
-        return result.mesh
-    steps = min(result.solid_steps, _STEPS)
-    return result.mesh_of(steps, min(result.design.output.wall_points, _PLACES))

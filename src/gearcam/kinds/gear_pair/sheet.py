@@ -20,12 +20,11 @@ from gearcam.pictures.drawings import CENTER, OUTLINE, Circle, Drawing, reach
 from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board
 from gearcam.sheets.dimensions import Measure
 from gearcam.sheets.paper import NO_VALUES, Heading, begin, finish
+from gearcam.sheets.part import ABOVE, LEFT
 from gearcam.sheets.sheet import CENTERLINE, Sheet, fine
 
-LEFT: Final = 24.0
 RIGHT: Final = 20.0
-ABOVE: Final = 14.0
-"""Space for dimensions beside and above the wheels, mm of paper."""
+"""Space for dimensions on the right of the wheels, mm of paper."""
 
 POINT: Final = 2.0
 """Diameter of the ring around the pitch point, mm of paper."""
