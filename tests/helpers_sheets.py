@@ -11,7 +11,7 @@ from gearcam.numeric.arrays import lengths_along
 from gearcam.parts.body import Part
 from gearcam.sheets.paper import BINDING, MARGIN, Heading
 from gearcam.sheets.part import part_sheet
-from gearcam.sheets.sheet import FRAME, SERIES, Sheet, Text, text_box
+from gearcam.sheets.sheet import FRAME, SERIES, Sheet, Text
 from gearcam.sheets.spec import DrawingSpec
 
 STEP = 0.1
@@ -31,7 +31,7 @@ def sheet_of(part: Part, facts: dict[str, str] | None = None, title: str = "t") 
 
 def box(sheet: Sheet, text: Text) -> np.ndarray:
     """Left, low, right and high end of a text on paper, mm."""
-    low, high = sheet.on_paper(np.array(text_box(text, sheet.unit)))
+    low, high = sheet.on_paper(np.array(text.box(sheet.unit)))
     return np.array([low.real, low.imag, high.real, high.imag])
 
 

@@ -48,7 +48,7 @@ STYLE = DxfStyle(tolerance=1e-3)
 R12 = DxfStyle(tolerance=1e-3, curves="lines", version="R12")
 FACTS = {"module": "5 mm", "teeth": "36", "pressure angle": "20 deg", "density": "7850 kg/m^3"}
 TITLE = 'Nägel & "Draht" <fast>'
-HEADING = Heading(title=TITLE, notes=DrawingSpec(), kind="assembly drawing", number=None)
+HEADING = Heading(title=TITLE, notes=DrawingSpec(), number=None)
 SPACE = {"s": "http://www.w3.org/2000/svg"}
 
 
@@ -455,20 +455,20 @@ def broken(sheet: Sheet) -> Iterator[tuple[str, Sheet]]:
     """Sheets with a fault, and a word of what the lint must say."""
     text, other = sheet.texts[0], sheet.texts[1]
     moved = replace(other, place=text.place)
-    yield "lies on", replace(sheet, texts=(*sheet.texts, moved))
+    yield "lies on", replace(sheet, texts=[*sheet.texts, moved])
     yield (
         "outside the frame",
-        replace(sheet, texts=(*sheet.texts, replace(other, place=sheet.corner))),
+        replace(sheet, texts=[*sheet.texts, replace(other, place=sheet.corner)]),
     )
-    yield "height", replace(sheet, texts=(replace(text, height=2.6), *sheet.texts[1:]))
+    yield "height", replace(sheet, texts=[replace(text, height=2.6), *sheet.texts[1:]])
     yield (
         "a line of",
         replace(
             sheet,
-            texts=(*sheet.texts, replace(other, place=complex(reach(sheet.features[0].shape)[0]))),
+            texts=[*sheet.texts, replace(other, place=complex(reach(sheet.features[0].shape)[0]))],
         ),
     )
-    yield "dimensioned twice", replace(sheet, dimensions=(*sheet.dimensions, sheet.dimensions[0]))
+    yield "dimensioned twice", replace(sheet, dimensions=[*sheet.dimensions, sheet.dimensions[0]])
 
 
 def test_the_lint_finds_faults() -> None:

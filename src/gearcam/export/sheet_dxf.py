@@ -137,8 +137,8 @@ def _dimension(space: Any, sheet: Sheet, one: SheetDimension, block: str) -> Non
         "actual_measurement": one.value,
     }  # fmt: skip
     if len(rest) == 2:
-        made |= {"defpoint2": rest[0], "defpoint3": rest[1]}
-        made["angle"] = 90.0 if one.kind == "vertical" else 0.0
+        turn = 90.0 if one.kind == "vertical" else 0.0
+        made |= {"defpoint2": rest[0], "defpoint3": rest[1], "angle": turn}
     else:
         made["defpoint4"] = rest[0]
     space.new_entity("DIMENSION", made)
@@ -173,13 +173,12 @@ def _text(space: BaseLayout, sheet: Sheet, text: Text, layer: str, old: bool) ->
     if old:
         escaped = (_SYMBOLS.get(c, c if c.isascii() else f"\\U+{ord(c):04X}") for c in words)
         words = "".join(escaped)
-    made = space.add_text(
+    space.add_text(
         words,
         height=text.height * sheet.unit,
         rotation=90.0 if text.upright else 0.0,
         dxfattribs={"layer": layer, "style": STYLE, "width": text.squeeze},
-    )
-    made.set_placement(_place(text.place), align=align)
+    ).set_placement(_place(text.place), align=align)
 
 
 def _place(point: complex) -> tuple[float, float]:

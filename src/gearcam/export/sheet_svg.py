@@ -57,9 +57,9 @@ def _data(sheet: Sheet, points: Plane) -> str:
 
 def _text(sheet: Sheet, text: Text) -> str:
     at = complex(sheet.on_paper(np.array([text.place]))[0])
-    place = f'x="{decimal(at.real)}" y="{decimal(sheet.size[1] - at.imag)}"'
+    x, y = decimal(at.real), decimal(sheet.size[1] - at.imag)
     size = f'font-size="{decimal(text.height / CAPITAL)}" text-anchor="{text.anchor}"'
     if text.squeeze < 1.0:
         size += f' textLength="{decimal(text.width)}" lengthAdjust="spacingAndGlyphs"'
-    turn = f' transform="rotate(-90 {place[3:].replace(chr(34), "").replace("y=", "")})"'
-    return f"<text {place} {size}{turn if text.upright else ''}>{escape(text.text)}</text>"
+    turn = f' transform="rotate(-90 {x} {y})"' if text.upright else ""
+    return f'<text x="{x}" y="{y}" {size}{turn}>{escape(text.text)}</text>'

@@ -5,13 +5,15 @@ The outside is seen from outside, with the azimuth in the cam's frame from left 
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
 from gearcam.base.numerals import decimal
-from gearcam.kinds.gridded import STEM
+from gearcam.kinds.gridded import STEM, GriddedCam
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Opening, Part
 from gearcam.parts.shapes import Circle
@@ -19,15 +21,8 @@ from gearcam.pictures.drawings import Drawing, box, place
 from gearcam.sheets.paper import Heading, Values, sheet_rows
 from gearcam.sheets.part import part_sheet
 from gearcam.sheets.sections import mesh_loops
-from gearcam.sheets.wheel import Sense, Unrolled
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from gearcam.kinds.gridded import GriddedCam
-    from gearcam.numeric.arrays import Array
-    from gearcam.numeric.mesh import Mesh
-    from gearcam.sheets.sheet import Sheet
+from gearcam.sheets.sheet import Sheet
+from gearcam.sheets.wheel import Sense, Unrolled, check_runout
 
 _STEPS: Final = 360
 _PLACES: Final = 5
@@ -83,19 +78,16 @@ def cam_sheet(
         shape = Circle(center=0j, diameter=bore) if bore else None
         openings = (Opening(kind="BORE", shape=shape, name="bore"),) if shape else ()
         part = Part(name=STEM, contours=(outline,), width=length, openings=openings)
-    mesh = _mesh(result)
+    check_runout(design.drawing, [part])
+    steps, places = min(result.solid_steps, _STEPS), min(design.output.wall_points, _PLACES)
+    mesh = result.mesh if result.carved else result.mesh_of(steps, places)
     loops = [loop - base for loop in mesh_loops(mesh)]
     low, _ = box(drawing.features)
     unrolled = replace(drawing, features=place(drawing.features, Pose(0.0, -low)))
     theta = np.arange(0.0, 360.0, _TABLE)
     name, values = column
-    places = values(np.radians(theta)).tolist()
-    table = [(decimal(a), decimal(p)) for a, p in zip(theta.tolist(), places, strict=True)]
-    if design.drawing.runout and not design.blank.bore:
-        from gearcam.base.errors import InfeasibleError
-
-        what = "run-out is about a bore, and the cam has none"
-        raise InfeasibleError(what, where="drawing.runout_mm", nearest="blank.bore_diameter_mm")
+    tabled = zip(theta.tolist(), values(np.radians(theta)).tolist(), strict=True)
+    table = [(decimal(angle), decimal(value)) for angle, value in tabled]
     return part_sheet(
         part,
         sheet_rows(result.facts, rows),
@@ -104,10 +96,3 @@ def cam_sheet(
         values=Values(title=("theta, deg", name), rows=table),
         unrolled=Unrolled(loops=loops, drawing=unrolled, title=texts[0], note=texts[1]),
     )
-
-
-def _mesh(result: GriddedCam) -> Mesh:
-    if result.carved:
-        return result.mesh
-    steps = min(result.solid_steps, _STEPS)
-    return result.mesh_of(steps, min(result.design.output.wall_points, _PLACES))

@@ -8,7 +8,6 @@ from dataclasses import replace
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 
-from gearcam.base.errors import InfeasibleError
 from gearcam.designs.outputs import DRAWINGS, MESHES
 from gearcam.results.kind import Files
 from gearcam.results.result import Result
@@ -153,11 +152,10 @@ class PartsResult(Result):
         """The workshop drawings."""
         from gearcam.sheets.paper import sheet_rows
         from gearcam.sheets.part import part_sheet
+        from gearcam.sheets.wheel import check_runout
 
-        facts, runout = self.facts, self.design.drawing.runout
-        if runout and not any(one.kind == "BORE" for part in self.parts for one in part.openings):
-            what = "run-out is about a bore, and no part has one"
-            raise InfeasibleError(what, where="drawing.runout_mm", nearest="blank.bore_diameter_mm")
+        facts = self.facts
+        check_runout(self.design.drawing, self.parts)
         return tuple(
             part_sheet(
                 part,
@@ -184,8 +182,7 @@ class PartsResult(Result):
         from gearcam.sheets.paper import Heading
 
         design, count = self.design, len(self.parts)
-        kind = "assembly drawing" if number is None else "part drawing"
-        return Heading(title=design.name, notes=design.drawing, kind=kind, number=number, of=count)
+        return Heading(title=design.name, notes=design.drawing, number=number, of=count)
 
     @cached_property
     def solids(self) -> dict[str, Trimesh]:

@@ -10,27 +10,18 @@ Depends on drawings and sheets.
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 import numpy as np
 
-from gearcam.base.numerals import decimal
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane, as_pairs, lengths_along
 from gearcam.pictures.drawings import Circle, Feature, Path, Shape, chains
-from gearcam.sheets.dimensions import SHELF, UPRIGHT, along, arrow_head, leader, linear
-from gearcam.sheets.sheet import (
-    CENTERLINE,
-    Box,
-    Hatch,
-    SheetDimension,
-    Text,
-    text_box,
-    text_width,
-)
+from gearcam.sheets.dimensions import SHELF, UPRIGHT, Measure, arrow_head, leader, linear
+from gearcam.sheets.sheet import CENTERLINE, Box, Hatch, Sheet, SheetDimension, Text, text_width
 
 CELL: Final = 0.5
 """Cell size of the grids, mm of paper."""
@@ -61,66 +52,27 @@ _REACHES: Final = np.concatenate([np.arange(5.0, 30.0, 2.5), np.arange(30.0, 160
 AROUND: Final = np.radians(np.arange(7.5, 367.5, 7.5))
 """Directions to try for a leader that may have any."""
 
-SIGNS: Final = {"diameter": "Ø", "radius": "R"}
-
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Measure:
-    """A linear dimension that gets a level: its points `first` and `second`, complex, mm.
-
-    Without a `text` it says the number; an `aside` one follows from others, in parentheses.
-    """
-
-    first: complex
-    second: complex
-    text: str = ""
-    aside: bool = False
-
-    def label(self, vertical: bool) -> str:
-        """Return its text along y if `vertical`, else along x."""
-        words = self.text or decimal(abs(along(self.second - self.first, vertical)))
-        return f"({words})" if self.aside else words
-
-
-@dataclass(eq=False, kw_only=True)
-class Board:
+class Board(Sheet):
     """A sheet under construction.
 
     Parameters
     ----------
-    scale : float
-        Millimetres of paper over millimetres of the part.
+    title : str
+        Empty until it is finished.
     area : complex, complex, mm of the part
         Area for the texts of the views, lower left and upper right corner.
-    paper : str
-        Its paper, such as ``A4``.
-    corner : complex, mm of the part
-        Lower left corner of the paper.
-    features, hatches, fills, dimensions, texts, rows : list
-        As in `Sheet`.
     """
 
-    scale: float
+    title: str = ""
     area: Box
-    paper: str = ""
-    corner: complex = 0j
-    features: list[Feature] = field(default_factory=list)
-    hatches: list[Hatch] = field(default_factory=list)
-    fills: list[Plane] = field(default_factory=list)
-    dimensions: list[SheetDimension] = field(default_factory=list)
-    texts: list[Text] = field(default_factory=list)
-    rows: list[tuple[str, str]] = field(default_factory=list)
 
-    def __post_init__(self) -> None:
+    @cached_property
+    def _grids(self) -> Mask:
+        """The cells of lines, and those of texts."""
         size = (self.area[1] - self.area[0]) * self.scale / CELL
-        cells = math.ceil(size.real) + 1, math.ceil(size.imag) + 1
-        self._lines = np.zeros(cells, dtype=bool)
-        self._taken = np.zeros(cells, dtype=bool)
-
-    @property
-    def unit(self) -> float:
-        """Millimetres of the part in a millimetre of paper."""
-        return 1.0 / self.scale
+        return np.zeros((2, math.ceil(size.real) + 1, math.ceil(size.imag) + 1), dtype=bool)
 
     def draw(self, layer: str, shape: Shape) -> None:
         """Draw a `shape` on a `layer`."""
@@ -153,12 +105,12 @@ class Board:
     def write(self, text: Text) -> None:
         """Write a text at its place."""
         self.texts.append(text)
-        self._take(*text_box(text, self.unit))
+        self._take(*text.box(self.unit))
 
     def first_free(self, texts: Iterable[Text]) -> None:
         """Write the first of several `texts` that has space, or else the first."""
         given = list(texts)
-        boxes = [text_box(one, self.unit) for one in given]
+        boxes = [one.box(self.unit) for one in given]
         free = self._empty(np.array([low for low, _ in boxes]), np.array([b for _, b in boxes]))
         self.write(given[int(np.argmax(free))])
 
@@ -178,34 +130,26 @@ class Board:
         vertical : bool
             Whether they are measured along y.
         """
-        ends = [along(p, vertical) for one in measures for p in (one.first, one.second)]
-        order = sorted(measures, key=lambda one: abs(along(one.second - one.first, vertical)))
-        for number, one in enumerate(order):
-            made = linear(
-                one.first,
-                one.second,
-                at + side * (FIRST_LEVEL + LEVEL * number) * self.unit,
-                one.label(vertical),
-                self.unit,
-                vertical=vertical,
-                beyond=max(ends),
-            )
-            self.add(made)
+        beyond = max((end for one in measures for end in one.ends(vertical)), default=0.0)
+        for number, one in enumerate(sorted(measures, key=lambda one: one.length(vertical))):
+            level = at + side * (FIRST_LEVEL + LEVEL * number) * self.unit
+            self.add(linear(one, level, self.unit, beyond, vertical=vertical))
 
     def add(self, dimension: SheetDimension) -> None:
         """Draw a dimension."""
         self.dimensions.append(dimension)
         for line in dimension.lines:
             self._ink(line)
-        self._take(*text_box(dimension.text, self.unit))
+        self._take(*dimension.text.box(self.unit))
 
     def callout(
         self,
         circle: Circle,
-        words: str = "",
-        *,
+        text: str,
         kind: str = "diameter",
+        *,
         angles: Array | None = None,
+        row: tuple[str, str] | None = None,
     ) -> bool:
         """Draw a diameter, a radius, or a text with a leader, where there is space.
 
@@ -213,29 +157,32 @@ class Board:
         ----------
         circle : Circle
             What the arrow points to.
-        words : str
-            The text; by default sign and number. With ``{}`` these are in its place.
+        text : str
+            The text.
         kind : {"diameter", "radius", "label"}
             What it is.
         angles : (n,) array, rad, optional
             Allowed directions of the arrow; any by default.
+        row : (str, str), optional
+            What the table says instead if there is no space.
 
         Returns
         -------
         bool
-            False if there is no space: nothing is drawn, and the table must contain it.
+            Whether there is space.
         """
-        label = label_of(circle, words, kind)
         reaches = np.concatenate([_REACHES, -_REACHES]) if kind == "radius" else _REACHES
-        found = self.place(circle, complex(text_width(label), SHELF), angles, reaches)
+        found = self.place(circle, complex(text_width(text), SHELF), angles, reaches)
         if found:
-            radius = 0.5 * circle.diameter
-            self.add(leader(circle.center, radius, *found, label, kind, self.unit))
+            self.add(leader(circle, *found, text, kind, self.unit))
+        elif row:
+            self.rows.append(row)
         return found is not None
 
-    def label(self, point: complex, text: str) -> bool:
-        """Return whether a `text` with a leader to a `point`, mm, has space; then it is drawn."""
-        return self.callout(Circle(center=point, diameter=0.02 * self.unit), text, kind="label")
+    def label(self, point: complex, text: str, row: tuple[str, str] | None = None) -> bool:
+        """Return whether a `text` with a leader to a `point`, mm, is drawn (see `callout`)."""
+        spot = Circle(center=point, diameter=0.02 * self.unit)
+        return self.callout(spot, text, "label", row=row)
 
     def place(
         self, circle: Circle, size: complex, angles: Array | None = None, reaches: Array = _REACHES
@@ -287,16 +234,16 @@ class Board:
         count = max(2, math.ceil(length * self.scale / CELL))
         on_way = np.linspace(skip, 1.0, count) * way
         cells, inside = self._cells(np.asarray(start + on_way, dtype=np.complex128))
-        if not inside.all() or self._taken[cells[:, 0], cells[:, 1]].any():
+        if not inside.all():
             return math.inf
-        hits = int(self._lines[cells[:, 0], cells[:, 1]].sum())
-        return float(hits) if hits <= MOST else math.inf
+        hits, texts = self._grids[:, cells[:, 0], cells[:, 1]].sum(axis=1).tolist()
+        return float(hits) if hits <= MOST and not texts else math.inf
 
     def _cells(self, points: Plane) -> tuple[Ints, Mask]:
         """Return the cells of points, (n, 2), and which of them lie on the grid."""
         places = as_pairs(points - self.area[0]) * self.scale / CELL
         cells = np.floor(places).astype(np.int64)
-        inside = np.logical_and.reduce((cells >= 0) & (cells < self._lines.shape), axis=1)
+        inside = np.logical_and.reduce((cells >= 0) & (cells < self._grids.shape[1:]), axis=1)
         return cells, inside
 
     def _empty(self, low: Plane, high: Plane) -> Mask:
@@ -304,9 +251,8 @@ class Board:
         edge = CLEAR * self.unit * (1.0 + 1j)
         first, inside = self._cells(low - edge)
         last, also = self._cells(high + edge)
-        sums = np.zeros(np.add(self._lines.shape, 1), dtype=np.int64)
-        sums[1:, 1:] = (self._lines | self._taken).cumsum(axis=0).cumsum(axis=1)
-        limit = np.array(self._lines.shape) - 1
+        sums = np.pad(self._grids.any(axis=0).cumsum(axis=0).cumsum(axis=1), ((1, 0), (1, 0)))
+        limit = np.array(sums.shape) - 2
         (i, j), (k, m) = np.clip(first, 0, limit).T, np.clip(last, 0, limit).T + 1
         held = sums[k, m] - sums[i, m] - sums[k, j] + sums[i, j]
         return inside & also & (held == 0)
@@ -316,23 +262,10 @@ class Board:
         count = max(2, math.ceil(ways[-1] * self.scale / (0.8 * CELL)) + 1)
         points = np.interp(np.linspace(0.0, ways[-1], count), ways, chain)
         cells, inside = self._cells(points)
-        self._lines[cells[inside, 0], cells[inside, 1]] = True
+        self._grids[0, cells[inside, 0], cells[inside, 1]] = True
 
     def _take(self, low: complex, high: complex) -> None:
         edge = CLEAR * self.unit * (1.0 + 1j)
         corners, _ = self._cells(np.array([low - edge, high + edge]))
         (i, j), (k, m) = np.clip(corners, 0, None)
-        self._taken[i : k + 1, j : m + 1] = True
-
-
-def label_of(circle: Circle, words: str = "", kind: str = "diameter") -> str:
-    """Return the text of a diameter or radius (see `Board.callout`)."""
-    if kind == "label":
-        return words
-    value = circle.diameter if kind == "diameter" else 0.5 * circle.diameter
-    return (words or "{}").replace("{}", f"{SIGNS[kind]}{decimal(value)}")
-
-
-def direction(point: complex) -> Array:
-    """Return the direction of a `point` from the origin as the only one, rad."""
-    return np.array([cmath.phase(point)])
+        self._grids[1, i : k + 1, j : m + 1] = True

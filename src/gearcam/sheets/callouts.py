@@ -15,15 +15,15 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.numerals import decimal
-from gearcam.parts.body import Part
-from gearcam.parts.shapes import Circle, Loop
+from gearcam.parts.body import Part, ScrewHole
+from gearcam.parts.shapes import Circle, Loop, true_points
 from gearcam.pictures.drawings import SLOT
-from gearcam.sheets.board import AROUND, OVERHANG, Board, direction
-from gearcam.sheets.board import label_of as label
+from gearcam.sheets.board import OVERHANG, Board
+from gearcam.sheets.dimensions import diameter_text
 from gearcam.sheets.paper import Heading
 from gearcam.sheets.sheet import CENTERLINE, DIMENSION, fine
 from gearcam.sheets.symbols import frame
-from gearcam.sheets.wheel import SAME, Sense, Wheel, holes_of, thread
+from gearcam.sheets.wheel import SAME, Sense, Wheel, holes_of
 
 _NEAR: Final = 0.1
 """Angle to both sides of theta = 0 at which the outline is looked at, rad."""
@@ -35,17 +35,15 @@ def turning_arrow(board: Board, wheel: Wheel, turning: Sense) -> None:
     reach = float(ahead.real[np.abs(np.angle(ahead)) < _NEAR].max())
     end = cmath.rect(reach + 8.0 * board.unit, turning.zero)
     board.line(CENTERLINE, 0j, end)
-    if not board.label(end, "theta = 0"):
-        board.rows.append(("theta = 0 at", f"{decimal(math.degrees(turning.zero))} deg"))
+    board.label(end, "theta = 0", ("theta = 0 at", f"{decimal(math.degrees(turning.zero))} deg"))
     radius = 0.5 * (wheel.radius + float(np.abs(wheel.points).min()))
     sense = -1.0 if turning.clockwise else 1.0
-    angles = turning.zero + sense * np.linspace(0.3, 1.2, 19)
-    arc = radius * np.exp(1j * angles)
+    arc = radius * np.exp(1j * (turning.zero + sense * np.linspace(0.3, 1.2, 19)))
     board.line(DIMENSION, *arc.tolist())
     tip = complex(arc[-1])
     board.arrow(tip, 1j * sense * tip / abs(tip))
-    if not board.label(complex(arc[9]), turning.words):
-        board.rows.append(("rotation", turning.words))
+    words = f"turns {'' if turning.clockwise else 'counter-'}clockwise"
+    board.label(complex(arc[9]), words, ("rotation", words))
 
 
 def frames(board: Board, wheel: Wheel, heading: Heading, left: float) -> None:
@@ -75,23 +73,22 @@ def callouts(board: Board, wheel: Wheel, side: float) -> None:
         edge = complex(side - part.ends[0] + part.screw.middle, -part.screw.edge.reach)
         board.label(edge, thread(part.screw))
     for mark in part.marks:
-        words = f"mark {label(mark.edge)}, {decimal(mark.depth)} deep"
-        if not board.callout(mark.edge, words, kind="label"):
-            board.rows.append(("mark", words.removeprefix("mark ")))
+        words = f"{diameter_text(mark.diameter)}, {decimal(mark.depth)} deep"
+        board.callout(mark.edge, f"mark {words}", "label", row=("mark", words))
 
 
 def _radii(board: Board, wheel: Wheel) -> None:
     """Draw the largest and the smallest radius of the teeth from the axis."""
-    reach = np.abs(wheel.toothed)
+    # of a ring those of its inner edge
+    teeth = true_points(wheel.part.inner[-1:]) if wheel.part.inner else wheel.points
+    reach = np.abs(teeth)
     for radius, word in ((float(reach.max()), "max"), (float(reach.min()), "min")):
         # the first of the points on an arc about the axis, not one that rounding chooses
-        point = complex(wheel.toothed[np.argmax(np.abs(reach - radius) < SAME)])
-        circle, words = Circle(center=0j, diameter=2.0 * radius), f"{{}} {word}"
-        # a leader without direction to the axis
-        if not board.callout(circle, words, kind="radius", angles=direction(point)) and (
-            not board.label(point, label(circle, words, "radius"))
-        ):
-            board.rows.append((f"{word}. radius from axis", decimal(radius)))
+        point = complex(teeth[np.argmax(np.abs(reach - radius) < SAME)])
+        circle, words = Circle(center=0j, diameter=2.0 * radius), f"R{decimal(radius)} {word}"
+        if not board.callout(circle, words, "radius", angles=np.array([cmath.phase(point)])):
+            # a leader without direction to the axis
+            board.label(point, words, (f"{word}. radius from axis", decimal(radius)))
 
 
 def _holes(board: Board, part: Part, origin: complex) -> None:
@@ -101,20 +98,22 @@ def _holes(board: Board, part: Part, origin: complex) -> None:
         key = round(circle.diameter / SAME), round(abs(circle.center) / SAME)
         groups.setdefault(key, []).append(circle)
     patterns = [group for group in groups.values() if _even(group)]
-    singles = [one for group in groups.values() if not _even(group) for one in group]
+    singles = [one for group in groups.values() if group not in patterns for one in group]
     for group in patterns:
         _ring(board, group)
-    names = {id(one): f"H{k} {{}}" for k, one in enumerate(singles, start=1)}
+    named = [
+        (hole, f"H{number} {diameter_text(hole.diameter)}")
+        for number, hole in enumerate(singles, start=1)
+    ]
     for hole in singles:
         board.centre(hole)
-    for hole in sorted(singles, key=lambda one: -one.diameter):
-        board.callout(hole, names[id(hole)])
+    for hole, words in sorted(named, key=lambda one: -one[0].diameter):
+        board.callout(hole, words)
     for group in patterns:
         _pattern(board, group)
-    for hole in singles:
+    for hole, words in named:
         at = hole.center - origin
-        place = f"X {decimal(at.real)}  Y {decimal(at.imag)}"
-        board.rows.append((label(hole, names[id(hole)]), place))
+        board.rows.append((words, f"X {decimal(at.real)}  Y {decimal(at.imag)}"))
 
 
 def _even(circles: list[Circle]) -> bool:
@@ -138,18 +137,18 @@ def _ring(board: Board, circles: list[Circle]) -> None:
 
 def _pattern(board: Board, circles: list[Circle]) -> None:
     one, count = circles[0], len(circles)
-    first, words = cmath.phase(one.center), f"{count} x {{}}"
-    board.callout(one, words, angles=AROUND)
+    first, words = cmath.phase(one.center), f"{count} x {diameter_text(one.diameter)}"
+    board.callout(one, words)
     # the arrow points at the circle between two holes
     between = first + math.pi / count * np.array([1.0, 3.0, -1.0, -3.0, 0.5, -0.5, 1.5, -1.5])
     ring = Circle(center=0j, diameter=2.0 * abs(one.center))
-    board.callout(ring, angles=between)
-    at = f"on {label(ring)}, at {decimal(math.degrees(first))} deg"
-    board.rows.append((label(one, words), at))
+    size = diameter_text(ring.diameter)
+    board.callout(ring, size, angles=between)
+    board.rows.append((words, f"on {size}, at {decimal(math.degrees(first))} deg"))
 
 
 def _slot(board: Board, shape: Loop) -> None:
-    """SheetDimension a slot along an arc about the axis: width, mean radius and end angles."""
+    """Say of a slot along an arc about the axis: width, mean radius and end angles."""
     corners = shape.points
     half = len(corners) // 2
     radii = np.abs(corners[[0, half]])
@@ -157,8 +156,12 @@ def _slot(board: Board, shape: Loop) -> None:
     sweep = float(np.angle(corners[1:half] / corners[: half - 1]).sum())
     first = math.degrees(cmath.phase(complex(corners[0])))
     end = Circle(center=complex(corners[[half - 1, half]].mean()), diameter=width)
-    if not board.callout(end, "slot {}", kind="radius"):
-        board.rows.append(("slot, width", decimal(width)))
+    words, last = f"slot R{decimal(0.5 * width)}", first + math.degrees(sweep)
+    board.callout(end, words, "radius", row=("slot, width", decimal(width)))
     board.rows.append(("slot, mid radius", decimal(middle)))
-    last = first + math.degrees(sweep)
     board.rows.append(("slot, ends at", f"{decimal(first)}, {decimal(last)} deg"))
+
+
+def thread(screw: ScrewHole) -> str:
+    """Return the thread of a set screw in words."""
+    return f"set screw {screw.size}"

@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Final
 
 from gearcam.base.errors import InfeasibleError
@@ -21,17 +21,7 @@ from gearcam.base.facts import Facts, NamedFact
 from gearcam.base.numerals import formatted
 from gearcam.parts.shapes import Circle
 from gearcam.sheets.board import Board
-from gearcam.sheets.sheet import (
-    DIMENSION,
-    FRAME,
-    HEIGHT,
-    RULE,
-    SERIES,
-    Box,
-    Sheet,
-    Text,
-    text_width,
-)
+from gearcam.sheets.sheet import DIMENSION, FRAME, HEIGHT, RULE, SERIES, Sheet, Text, text_width
 from gearcam.sheets.spec import DrawingNotes
 
 PAPERS: Final = {"A4": (297.0, 210.0), "A3": (420.0, 297.0), "A2": (594.0, 420.0)}
@@ -60,9 +50,7 @@ INSET: Final = 1.5
 ROOMY: Final = 1.1
 """Width of letters over those of Helvetica for which cells have space: fonts of programs differ."""
 
-SCALES: Final = tuple(base * 10.0**power for power in range(2, -7, -1) for base in (5.0, 2.0, 1.0))[
-    2:
-]
+SCALES: Final = tuple(b * 10.0**power for power in range(2, -7, -1) for b in (5.0, 2.0, 1.0))[2:]
 """100:1 and smaller."""
 
 ALONE: Final = 36.0
@@ -85,8 +73,6 @@ class Heading:
         Title.
     notes : DrawingNotes
         Of the design.
-    kind : str
-        Type of the document.
     number : int or None
         Which of the parts, from 0; None for all together.
     of : int
@@ -95,7 +81,6 @@ class Heading:
 
     title: str
     notes: DrawingNotes
-    kind: str = "part drawing"
     number: int | None = 0
     of: int = 1
 
@@ -133,7 +118,7 @@ def scale_words(scale: float) -> str:
     return f"{formatted(scale)}:1" if scale >= 1.0 else f"1:{formatted(1.0 / scale)}"
 
 
-def area_of(paper: str) -> Box:
+def area_of(paper: str) -> tuple[complex, complex]:
     """Return the corners of the views' area on a `paper`, mm of paper."""
     wide, tall = PAPERS[paper]
     low = complex(BINDING + PAD, MARGIN + BLOCK[1] + PAD)
@@ -205,11 +190,20 @@ def _row_text(fact: NamedFact) -> str:
     return f"{formatted(value)} {unit}".rstrip() if isinstance(value, float) else fact.text
 
 
-def begin(size: complex, room: Box, low: complex, rows: int, wide: float = 0.0) -> Board:
+def begin(
+    name: str,
+    size: complex,
+    room: tuple[complex, complex],
+    low: complex,
+    rows: int,
+    wide: float = 0,
+) -> Board:
     """Return an empty sheet with the views centred in their area.
 
     Parameters
     ----------
+    name : str
+        Name of the sheet.
     size : complex, mm
         Width and height of all views together.
     room : complex, complex, mm of paper
@@ -219,7 +213,7 @@ def begin(size: complex, room: Box, low: complex, rows: int, wide: float = 0.0) 
     rows : int
         Number of rows of the tables.
     wide : float, mm
-        Width of a view that stands below the others.
+        Width of a view that stands below the others; 0 without one.
 
     Returns
     -------
@@ -238,17 +232,11 @@ def begin(size: complex, room: Box, low: complex, rows: int, wide: float = 0.0) 
         idle = complex(min(idle.real, (last - first).real - ALONE - scale * wide), idle.imag)
     corner = low - (first + room[0] + 0.5 * idle) / scale
     area = corner + first / scale, corner + last / scale
-    return Board(scale=scale, area=area, paper=paper, corner=corner)
+    return Board(name=name, scale=scale, area=area, paper=paper, size=PAPERS[paper], corner=corner)
 
 
 def finish(
-    board: Board,
-    heading: Heading,
-    *,
-    name: str,
-    facts: Mapping[str, str],
-    notes: Sequence[str],
-    values: Values = NO_VALUES,
+    board: Board, heading: Heading, facts: Mapping[str, str], notes: Sequence[str], values: Values
 ) -> Sheet:
     """Return the finished sheet, with frame, tables, title block and notes around the views.
 
@@ -258,8 +246,6 @@ def finish(
         With its views.
     heading : Heading
         What the title block says.
-    name : str
-        Name of the sheet.
     facts : mapping of str to str
         First rows of the table of data; those of the board follow.
     notes : sequence of str
@@ -271,9 +257,9 @@ def finish(
     -------
     Sheet
     """
-    size, more = PAPERS[board.paper], Counter(board.rows)
+    size, more = board.size, Counter(board.rows)
     alike = ((f"{n} x {label}" if n > 1 else label, text) for (label, text), n in more.items())
-    rows = (*facts.items(), *alike)
+    rows = [*facts.items(), *alike]
     left, right, top = BINDING, size[0] - MARGIN, size[1] - MARGIN
     frame = complex(left, MARGIN), complex(right, MARGIN), complex(right, top), complex(left, top)
     _chain(board, FRAME, *frame, closed=True)
@@ -283,7 +269,7 @@ def finish(
     _table(board, rows, corner, row)
     if values.rows:
         _values(board, values, corner - 1j * row * (len(rows) + 1), row)
-    _block(board, heading, name, complex(right - BLOCK[0], MARGIN))
+    _block(board, heading, complex(right - BLOCK[0], MARGIN))
     wide = right - BLOCK[0] - left - 2 * INSET
     for height in (HEIGHT, SERIES[0]):
         lines = [line for note in notes for line in _wrapped(note, wide / ROOMY, height)]
@@ -293,20 +279,8 @@ def finish(
     for number, line in enumerate(lines, start=1):
         place = complex(left + INSET, MARGIN + BLOCK[1] - pitch * number)
         _write(board, line, place, wide, height)
-    drawn = {
-        part: tuple(getattr(board, part))
-        for part in ("features", "hatches", "fills", "dimensions", "texts")
-    }
-    return Sheet(
-        name=name,
-        title=heading.title,
-        paper=board.paper,
-        size=size,
-        scale=board.scale,
-        corner=board.corner,
-        rows=rows,
-        **drawn,
-    )
+    drawn = {one.name: getattr(board, one.name) for one in fields(Sheet)}
+    return Sheet(**drawn | {"title": heading.title, "rows": rows})
 
 
 def _wrapped(note: str, wide: float, height: float) -> list[str]:
@@ -369,37 +343,24 @@ def _values(board: Board, values: Values, corner: complex, row: float) -> None:
                 _chain(board, RULE, at, at + wide, at + wide + 1j * row)
 
 
-def _block(board: Board, heading: Heading, name: str, corner: complex) -> None:
+def _block(board: Board, heading: Heading, corner: complex) -> None:
     """Draw the title block of ISO 7200 upwards from its lower left corner."""
     notes, number = heading.notes, heading.number
     rows = [
-        [
-            ("part number", heading.part_number or name, 62.0),
-            ("revision", notes.revision, 18.0),
-            ("date of issue", notes.date, 30.0),
-            ("approved by", notes.approved_by, 40.0),
-            ("language", "en", 14.0),
-            ("sheet", "1/1", 16.0),
-        ],
-        [
-            ("title", heading.title, 80.0),
-            ("created by", notes.author, 40.0),
-            ("legal owner", notes.owner, 60.0),
-        ],
-        [
-            ("scale", scale_words(board.scale), 18.0),
-            ("projection", "", 24.0),
-            ("units", "mm, deg", 20.0),
-            ("paper", board.paper, 18.0),
-            ("general tolerances", notes.general_tolerances, 40.0),
-            ("document type", heading.kind, 60.0),
-        ],
-        [
-            ("material", notes.of("material", number), 80.0),
-            ("heat treatment", notes.of("heat_treatment", number), 64.0),
-            ("surface texture", "", 36.0),
-        ],
-    ]
+        [("part number", heading.part_number or board.name, 62.0),
+         ("revision", notes.revision, 18.0), ("date of issue", notes.date, 30.0),
+         ("approved by", notes.approved_by, 40.0), ("language", "en", 14.0),
+         ("sheet", "1/1", 16.0)],
+        [("title", heading.title, 80.0), ("created by", notes.author, 40.0),
+         ("legal owner", notes.owner, 60.0)],
+        [("scale", scale_words(board.scale), 18.0), ("projection", "", 24.0),
+         ("units", "mm, deg", 20.0), ("paper", board.paper, 18.0),
+         ("general tolerances", notes.general_tolerances, 40.0),
+         ("document type", f"{'assembly' if number is None else 'part'} drawing", 60.0)],
+        [("material", notes.of("material", number), 80.0),
+         ("heat treatment", notes.of("heat_treatment", number), 64.0),
+         ("surface texture", "", 36.0)],
+    ]  # fmt: skip
     for up, cells in enumerate(rows):
         low = corner + 1j * CELLS * up
         for label, value, wide in cells:

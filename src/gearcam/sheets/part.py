@@ -13,7 +13,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Mapping
-from typing import Final, cast
+from typing import Final
 
 from gearcam.base.numerals import decimal
 from gearcam.numeric.pose import Pose
@@ -21,24 +21,13 @@ from gearcam.parts.body import Hub, Part, ScrewHole
 from gearcam.parts.shafts import keyway_of
 from gearcam.parts.shapes import Circle, Loop, extremes
 from gearcam.pictures.drawings import box, part_features, place, placed
-from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board, Measure
-from gearcam.sheets.board import label_of as label
-from gearcam.sheets.callouts import callouts, frames, turning_arrow
+from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board
+from gearcam.sheets.callouts import callouts, frames, thread, turning_arrow
+from gearcam.sheets.dimensions import Measure, diameter_text
 from gearcam.sheets.paper import NO_VALUES, Heading, Values, begin, finish
 from gearcam.sheets.sheet import CENTERLINE, EDGE, HEIGHT, HIDDEN, Sheet, Text, fine
 from gearcam.sheets.symbols import datum, section_letters, section_line
-from gearcam.sheets.wheel import (
-    BORES,
-    SAME,
-    UP,
-    Sense,
-    Unrolled,
-    Wheel,
-    fitted,
-    floor_of,
-    holes_of,
-    thread,
-)
+from gearcam.sheets.wheel import SAME, UP, Sense, Unrolled, Wheel, fitted, floor_of, holes_of
 
 LEFT: Final = 24.0
 BETWEEN: Final = 34.0
@@ -94,16 +83,13 @@ def part_sheet(
     below = BELOW + FIRST_LEVEL + LEVEL * levels
     across = BETWEEN + RIGHT + (BORE_ROOM if wheel.keyed else 0.0)
     rows = len(facts) + len(part.openings) + 2 + values.tall
-    low, wide = wheel.low, 0.0
-    if unrolled is not None:
-        outside = box(unrolled.drawing.features)[1]
-        size, low, wide = size + 1j * outside.imag, low - 1j * outside.imag, outside.real
-        below += UNROLLED
-    board = begin(size, (complex(LEFT, below), complex(across, ABOVE)), low, rows, wide)
+    outside = box(unrolled.drawing.features)[1] if unrolled else 0j
+    room = complex(LEFT, below + (UNROLLED if unrolled else 0.0)), complex(across, ABOVE)
+    tall = 1j * outside.imag
+    board = begin(part.name, size + tall, room, wheel.low - tall, rows, outside.real)
     side = wheel.high.real + BETWEEN * board.unit
     if unrolled is not None:
-        under = below - UNROLLED + 10.0
-        _unrolled(board, unrolled, wheel.low - 1j * under * board.unit)
+        _unrolled(board, unrolled, wheel.low - 1j * (below + 10.0) * board.unit)
     _front_view(board, wheel)
     _section(board, wheel, side)
     if wheel.keyed is not None:
@@ -115,14 +101,7 @@ def part_sheet(
     section_letters(board, wheel.plane, wheel.low.imag, wheel.high.imag)
     callouts(board, wheel, side)
     frames(board, wheel, heading, side)
-    return finish(
-        board,
-        heading,
-        name=part.name,
-        facts=facts,
-        notes=[*_notes(wheel)],
-        values=values,
-    )
+    return finish(board, heading, facts, _notes(wheel), values)
 
 
 def _notes(wheel: Wheel) -> list[str]:
@@ -142,12 +121,7 @@ def _notes(wheel: Wheel) -> list[str]:
 
 def _front_view(board: Board, wheel: Wheel) -> None:
     part = wheel.part
-    behind = {
-        id(edge)
-        for one in part.recesses
-        if not one.front
-        for edge in (one.edge, *(island.shape for island in one.openings))
-    }
+    behind = {id(edge) for one in part.recesses if not one.front for edge in one.edges}
     for feature in part_features(part, -1):
         board.draw(HIDDEN if id(feature.shape) in behind else feature.layer, feature.shape)
     if part.hub is not None:
@@ -161,20 +135,17 @@ def _front_view(board: Board, wheel: Wheel) -> None:
 
 def _front_sizes(board: Board, wheel: Wheel) -> None:
     left, low, right, high = extremes(wheel.points)
-    floor, side = wheel.low.imag - BELOW * board.unit, wheel.low.real
+    across, up = [Measure(left, right)], [Measure(low, high)]
     if wheel.round:
-        words = label(Circle(center=0j, diameter=(right - left).real))
-        board.measure([Measure(first=left, second=right, text=words)], floor)
-        return
-    across, up = [Measure(first=left, second=right)], [Measure(first=low, second=high)]
-    if wheel.placed:
+        across, up = [Measure(left, right, diameter_text((right - left).real))], []
+    elif wheel.placed:
         near = left if abs(wheel.low.real) < abs(wheel.high.real) else right
         corner = complex(near.real, wheel.low.imag)
         board.centre(Circle(center=0j, diameter=board.unit))
-        across += [Measure(first=0j, second=corner)] if abs(corner.real) > SAME else []
-        up += [Measure(first=0j, second=corner)]
-    board.measure(across, floor)
-    board.measure(up, side, vertical=True)
+        across += [Measure(0j, corner)] if abs(corner.real) > SAME else []
+        up += [Measure(0j, corner)]
+    board.measure(across, wheel.low.imag - BELOW * board.unit)
+    board.measure(up, wheel.low.real, vertical=True)
 
 
 def _section(board: Board, wheel: Wheel, left: float) -> None:
@@ -192,12 +163,8 @@ def _section(board: Board, wheel: Wheel, left: float) -> None:
         for x in (left, end):
             board.line(EDGE, complex(x, -wheel.radius), complex(x, wheel.radius))
     over = OVERHANG * board.unit
-    middles = [0.0] if wheel.turns else []
-    middles += [
-        one.center.imag
-        for one in holes_of(part)
-        if abs(one.center.real - wheel.plane) < 0.5 * one.diameter
-    ]
+    near = [c for c in holes_of(part) if abs(c.center.real - wheel.plane) < 0.5 * c.diameter]
+    middles = [*([0.0] if wheel.turns else []), *(circle.center.imag for circle in near)]
     for y in middles:
         board.line(CENTERLINE, complex(left - over, y), complex(end + over, y))
     if wheel.keyed is not None:
@@ -214,14 +181,14 @@ def _unrolled(board: Board, unrolled: Unrolled, high: complex) -> None:
     first, last = high - 1j * end.imag, high + end.real
     for feature in place(unrolled.drawing.features, Pose(0.0, first)):
         board.draw(feature.layer, feature.shape)
-    around = Measure(first=first, second=complex(last.real, first.imag), aside=True)
+    around = Measure(first, complex(last.real, first.imag), aside=True)
     board.measure([around], first.imag)
     board.write(Text(text=unrolled.title, place=high + 3.0j * board.unit))
 
 
 def _corner(board: Board, wheel: Wheel, bore: Loop, left: float, end: float) -> None:
     """Draw the edge where the side of a keyway, or a flat, meets the bore behind the plane."""
-    floor = floor_of(bore)
+    _, floor = floor_of(bore)
     y = math.sqrt(max(wheel.radius**2 - 0.25 * float(abs(floor[1] - floor[0])) ** 2, 0.0))
     if y < abs(floor.mean()) - SAME:
         board.line(EDGE, complex(left, y), complex(end, y))
@@ -229,7 +196,7 @@ def _corner(board: Board, wheel: Wheel, bore: Loop, left: float, end: float) -> 
 
 def _screw(board: Board, screw: ScrewHole, shift: float, inner: float) -> None:
     """Draw the hole of a set screw below the bore, and say its thread and place."""
-    outer, middle = 0.5 * cast("Circle", screw.edge).diameter, shift + screw.middle
+    outer, middle = screw.edge.reach, shift + screw.middle
     for x in (shift + screw.low, shift + screw.high):
         board.line(EDGE, complex(x, -inner), complex(x, -outer))
     over = OVERHANG * board.unit
@@ -241,67 +208,53 @@ def _screw(board: Board, screw: ScrewHole, shift: float, inner: float) -> None:
 def _section_sizes(board: Board, wheel: Wheel, left: float) -> None:
     part, hub = wheel.part, wheel.part.hub or Hub(diameter=0.0)
     back, end, base = left + hub.back, left + part.thickness, wheel.low.imag
-    rim = 1j * _lowest(wheel)
-    lengths = [Measure(first=back + rim, second=back + part.width + rim)]
+    steps = [one.edge.polyline(part.tolerance) for one in part.steps]
+    # how far down the plate is seen
+    rim = 1j * min(float(one.imag[one.real >= wheel.plane].min()) for one in steps)
+    foot, floor = -0.5j * hub.diameter, 1j * base
+    lengths = [Measure(back + rim, back + part.width + rim)]
+    lengths += [Measure(back + one.low + foot, back + one.high + foot) for one in part.bosses]
     if part.bosses:
-        foot = -0.5j * hub.diameter
-        lengths += [
-            Measure(first=back + boss.low + foot, second=back + boss.high + foot)
-            for boss in part.bosses
-        ]
-        lengths.append(Measure(first=left + foot, second=end + foot, aside=True))
-    for one in part.recesses:
-        depth = back + one.low + 1j * base, back + one.high + 1j * base
-        lengths.append(Measure(first=depth[0], second=depth[1]))
+        lengths.append(Measure(left + foot, end + foot, aside=True))
+    lengths += [Measure(back + one.low + floor, back + one.high + floor) for one in part.recesses]
     board.measure(lengths, base)
-    beside: list[Measure] = []
-    fits = wheel.fits
-    if wheel.bore and wheel.keyed is None:
-        words = label(Circle(center=0j, diameter=2.0 * wheel.radius))
-        beside.append(_upright(end, wheel.radius, fitted(words, fits.get("diameter"))))
+    plain = wheel.bore and wheel.keyed is None
+    beside = [_upright(end, wheel.radius, wheel.bore_text)] if plain else []
     if part.hub is not None:
-        words = label(Circle(center=0j, diameter=hub.diameter))
+        words = diameter_text(hub.diameter)
         if hub.front:
             beside.append(_upright(end, 0.5 * hub.diameter, words))
         else:
             board.measure([_upright(left, 0.5 * hub.diameter, words)], left, vertical=True)
     board.measure(beside, end, side=1, vertical=True)
-    if wheel.bore and wheel.keyed is None and wheel.turns:
+    if plain and wheel.turns:
         datum(board, complex(end + FIRST_LEVEL * board.unit, -wheel.radius), -1j)
 
 
-def _lowest(wheel: Wheel) -> float:
-    """Return how far down the plate is seen in the section, mm."""
-    steps = [one.edge.polyline(wheel.part.tolerance) for one in wheel.part.steps]
-    return min(float(one.imag[one.real >= wheel.plane].min()) for one in steps)
-
-
 def _upright(x: float, radius: float, words: str) -> Measure:
-    return Measure(first=complex(x, -radius), second=complex(x, radius), text=words)
+    return Measure(complex(x, -radius), complex(x, radius), text=words)
 
 
 def _bore_view(board: Board, wheel: Wheel, bore: Loop, left: float) -> None:
     """Draw a bore to the right of x = `left`, with its keyway or flat at the top."""
-    floor, kind = floor_of(bore), BORES[len(bore.points)]
+    kind, floor = floor_of(bore)
     radius, middle = wheel.radius, complex(floor.mean())
     unit, x, top, way = board.unit, left + wheel.radius, abs(middle), cmath.phase(middle)
     board.draw(EDGE, placed(bore, Pose(UP - way, x)))
     board.centre(Circle(center=complex(x), diameter=2.0 * max(radius, top)))
-    words = fitted(label(Circle(center=0j, diameter=2.0 * radius)), wheel.fits.get("diameter"))
-    ends = complex(x - radius), complex(x + radius)
-    board.measure([Measure(first=ends[0], second=ends[1], text=words)], -radius)
+    across = Measure(complex(x - radius), complex(x + radius), wheel.bore_text)
+    board.measure([across], -radius)
     half = 0.5 * float(abs(floor[1] - floor[0]))
     edge, limits = complex(x - half, top), ""
     if kind == "keyway":
         words = fitted(decimal(2.0 * half), wheel.fits.get("keyway"))
-        over = Measure(first=edge, second=edge + 2.0 * half, text=words)
-        board.measure([over], max(top, radius), side=1)
+        board.measure([Measure(edge, edge + 2.0 * half, words)], max(top, radius), side=1)
         key = keyway_of(2.0 * radius)
         if wheel.fits.get("keyway") and key and abs(top - radius - key.hub_depth) < SAME:
             limits = f" (+{key.tolerance}/0)"
     bottom = complex(x, -radius) if kind != "flats" else edge.conjugate()
     depth = decimal(top - bottom.imag) + limits
-    board.measure([Measure(first=bottom, second=edge, text=depth)], x - radius, vertical=True)
+    board.measure([Measure(bottom, edge, depth)], x - radius, vertical=True)
     datum(board, complex(x - radius, -radius - FIRST_LEVEL * unit), -1.0)
     line = complex(x, -radius - (FIRST_LEVEL + 5.0 + HEIGHT) * unit)
     board.write(Text(text=f"bore, {kind} turned up", place=line, anchor="middle"))

@@ -13,20 +13,17 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
+from itertools import compress, pairwise
 from typing import Final
 
 import numpy as np
 
-from gearcam.numeric.arrays import Array, Mask, Plane
+from gearcam.numeric.arrays import Array, Mask, Plane, complex_of
 from gearcam.numeric.mesh import Mesh
 from gearcam.parts.body import Edge, Layer
 from gearcam.parts.shapes import Circle
 
 _NONE: Final = np.empty(0)
-
-Line = tuple[complex, complex]
-"""Two points of a section, z and y, mm."""
 
 
 def crossings(edge: Edge, x: float, tolerance: float) -> Array:
@@ -76,26 +73,17 @@ class Section:
         ends = np.unique(np.concatenate([*cuts.values(), _NONE]))
         places = 0.5 * (ends[1:] + ends[:-1])
 
-        def within(layer: Layer) -> Mask:
-            edge, *islands = (
-                np.searchsorted(cuts[id(one)], places) % 2 == 1 for one in layer.edges
-            )
-            return edge & ~np.logical_or.reduce(islands) if islands else edge
+        def within(several: list[Layer]) -> Mask:
+            found = np.zeros(len(places), dtype=bool)
+            for one in several:
+                edge, *islands = (_inside(cuts[id(each)], places) for each in one.edges)
+                found |= edge & ~np.any(islands, axis=0)
+            return found
 
-        metal = np.zeros(len(places), dtype=bool)
-        for layer in layers:
-            metal |= within(layer)
-        for pocket in pockets:
-            metal &= ~within(pocket)
-        changed = np.flatnonzero(np.diff(np.concatenate([[False], metal, [False]]).astype(int)))
-        behind = [points.imag[points.real >= self.x] for points in self._outlines(layers)]
-        seen = np.concatenate([*behind, _NONE])
+        outlines = [one.edge.polyline(self.tolerance) for one in layers]
+        seen = np.concatenate([*(one.imag[one.real >= self.x] for one in outlines), _NONE])
         extent = np.array([seen.min(), seen.max()]) if len(seen) else _NONE
-        return ends[changed], extent
-
-    def _outlines(self, layers: Sequence[Layer]) -> Iterator[Plane]:
-        for layer in layers:
-            yield layer.edge.polyline(self.tolerance)
+        return _ends_of(within(layers) & ~within(pockets), ends), extent
 
     @property
     def metal(self) -> list[Plane]:
@@ -107,17 +95,15 @@ class Section:
         ]
 
     @property
-    def lines(self) -> Iterator[Line]:
-        """All visible edges."""
+    def lines(self) -> Iterator[tuple[complex, complex]]:
+        """All visible edges, from point to point, z and y, mm."""
         for (low, high), (ends, extent) in zip(pairwise(self.heights), self.slabs, strict=True):
             for y in np.union1d(ends, extent).tolist():
                 yield low + 1j * y, high + 1j * y
         nothing = _NONE, _NONE
-        slabs = [nothing, *self.slabs, nothing]
-        for height, ((ends, extent), (others, over)) in zip(
-            self.heights, pairwise(slabs), strict=True
-        ):
-            for y, top in _differing(ends, others, extent, over):
+        pairs = pairwise([nothing, *self.slabs, nothing])
+        for height, (below, above) in zip(self.heights, pairs, strict=True):
+            for y, top in _differing(*below, *above):
                 yield height + 1j * y, height + 1j * top
 
 
@@ -125,36 +111,32 @@ def _inside(ends: Array, places: Array) -> Mask:
     return np.searchsorted(ends, places) % 2 == 1
 
 
-def _differing(ends: Array, others: Array, extent: Array, over: Array) -> Array:
+def _ends_of(shown: Mask, cuts: Array) -> Array:
+    """Return both ends of each run of places between `cuts` that are shown."""
+    return cuts[np.flatnonzero(np.diff(np.concatenate([[False], shown, [False]]).astype(int)))]
+
+
+def _differing(ends: Array, extent: Array, others: Array, over: Array) -> Array:
     """Return where the face between two slabs is seen, (n, 2): metal or extents differ there."""
     cuts = np.unique(np.concatenate([ends, others, extent, over]))
     places = 0.5 * (cuts[1:] + cuts[:-1])
     one, two = _inside(ends, places), _inside(others, places)
     shown = (one != two) | (~one & ~two & (_inside(extent, places) != _inside(over, places)))
-    rise = np.flatnonzero(np.diff(np.concatenate([[False], shown, [False]]).astype(int)))
-    return cuts[rise].reshape(-1, 2)
+    return _ends_of(shown, cuts).reshape(-1, 2)
 
 
 def mesh_loops(mesh: Mesh) -> list[Plane]:
     """Return the closed loops in which the plane at x = 0 cuts a mesh: z and y, mm."""
-    corners = mesh.vertices[mesh.triangles]
-    above = corners[:, :, 0] > 0.0
-    cut = corners[above.any(axis=1) & ~above.all(axis=1)]
-    numbers = mesh.triangles[above.any(axis=1) & ~above.all(axis=1)]
-    following: dict[tuple[int, int], tuple[int, int]] = {}
-    points: dict[tuple[int, int], complex] = {}
-    for places, names in zip(cut, numbers.tolist(), strict=True):
-        ways = []
-        for k, m in ((0, 1), (1, 2), (2, 0)):
-            one, two = places[k], places[m]
-            if (one[0] > 0.0) != (two[0] > 0.0):
-                share = one[0] / (one[0] - two[0])
-                at = one + share * (two - one)
-                edge = (min(names[k], names[m]), max(names[k], names[m]))
-                points[edge] = complex(at[2], at[1])
-                ways.append((one[0] > 0.0, edge))
-        ways.sort()
-        following[ways[0][1]] = ways[1][1]
+    above = mesh.vertices[mesh.triangles, 0] > 0.0
+    rows, start = np.nonzero(above != np.roll(above, -1, axis=1))
+    # of each triangle that is cut, an edge that rises to x > 0 and one that falls from it
+    names = mesh.triangles[rows[:, None], np.column_stack([start, (start + 1) % 3])]
+    first, last = mesh.vertices[names[:, 0]], mesh.vertices[names[:, 1]]
+    at = first + first[:, :1] / (first[:, :1] - last[:, :1]) * (last - first)
+    edges = [(low, high) for low, high in np.sort(names, axis=1).tolist()]
+    points = dict(zip(edges, complex_of(at[:, 2], at[:, 1]).tolist(), strict=True))
+    falls = first[:, 0] > 0.0
+    following = dict(zip(compress(edges, ~falls), compress(edges, falls), strict=True))
     loops = []
     while following:
         start, here = following.popitem()

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 import unicodedata
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final, Literal
 
 import numpy as np
@@ -50,10 +50,7 @@ HEAVY: Final = (
 )  # fmt: skip
 """Layers drawn with wide lines."""
 
-PATTERNS: Final = {
-    "ACAD_ISO02W100": (12.0, 3.0),
-    "ACAD_ISO04W100": (24.0, 3.0, 0.5, 3.0),
-}
+PATTERNS: Final = {"ACAD_ISO02W100": (12.0, 3.0), "ACAD_ISO04W100": (24.0, 3.0, 0.5, 3.0)}
 """Dashed and long-dashed dotted lines: dashes and gaps, in widths of the line."""
 
 _DASHED, _CHAIN = PATTERNS
@@ -136,6 +133,26 @@ class Text(ShortRepr):
     def width(self) -> float:
         """Its width, mm of paper."""
         return self.squeeze * text_width(self.text, self.height)
+
+    def box(self, unit: float) -> Box:
+        """Return its bounding box with descenders.
+
+        Parameters
+        ----------
+        unit : float
+            Millimetres of the part in a millimetre of paper.
+
+        Returns
+        -------
+        complex, complex, mm of the part
+            Lower left and upper right corner.
+        """
+        wide, tall = self.width, self.height
+        start = -0.5 * wide if self.anchor == "middle" else 0.0
+        low, high = complex(start, -0.25 * tall), complex(start + wide, tall)
+        if self.upright:
+            low, high = complex(-tall, start), complex(0.25 * tall, start + wide)
+        return self.place + unit * low, self.place + unit * high
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -239,17 +256,17 @@ class Sheet(ShortRepr):
         Millimetres of paper over millimetres of the part.
     corner : complex, mm of the part
         Lower left corner of the paper.
-    features : tuple of Feature
+    features : list of Feature
         All lines except those of dimensions and hatches.
-    hatches : tuple of Hatch
+    hatches : list of Hatch
         Cut metal.
-    fills : tuple of (n,) complex array, mm
+    fills : list of (n,) complex array, mm
         Black areas, such as those of symbols.
-    dimensions : tuple of SheetDimension
+    dimensions : list of SheetDimension
         Dimensions and texts with leaders.
-    texts : tuple of Text
+    texts : list of Text
         All other texts.
-    rows : tuple of (str, str)
+    rows : list of (str, str)
         The table of data: label and value.
     """
 
@@ -259,12 +276,12 @@ class Sheet(ShortRepr):
     size: tuple[float, float]
     scale: float
     corner: complex
-    features: tuple[Feature, ...]
-    hatches: tuple[Hatch, ...] = ()
-    fills: tuple[Plane, ...] = ()
-    dimensions: tuple[SheetDimension, ...] = ()
-    texts: tuple[Text, ...] = ()
-    rows: tuple[tuple[str, str], ...] = ()
+    features: list[Feature] = field(default_factory=list)
+    hatches: list[Hatch] = field(default_factory=list)
+    fills: list[Plane] = field(default_factory=list)
+    dimensions: list[SheetDimension] = field(default_factory=list)
+    texts: list[Text] = field(default_factory=list)
+    rows: list[tuple[str, str]] = field(default_factory=list)
 
     @property
     def unit(self) -> float:
@@ -278,21 +295,19 @@ class Sheet(ShortRepr):
     @property
     def drawn_lines(self) -> Iterator[DrawnLine]:
         """All its lines, on paper."""
-        for feature in self.features:
-            for points, closed in chains(feature.shape, SAGITTA * self.unit):
-                yield DrawnLine(layer=feature.layer, points=self.on_paper(points), closed=closed)
-        for hatch in self.hatches:
-            for line in hatch.lines(HATCHED * self.unit):
-                yield DrawnLine(layer=HATCH, points=self.on_paper(line))
-        for one in self.dimensions:
-            for line in one.lines:
-                yield DrawnLine(layer=DIMENSION, points=self.on_paper(line))
+        unit = self.unit
+        every = [(f.layer, *one) for f in self.features for one in chains(f.shape, SAGITTA * unit)]
+        cut = (line for hatch in self.hatches for line in hatch.lines(HATCHED * unit))
+        every += [(HATCH, line, False) for line in cut]
+        every += [(DIMENSION, line, False) for one in self.dimensions for line in one.lines]
+        for layer, points, closed in every:
+            yield DrawnLine(layer=layer, points=self.on_paper(points), closed=closed)
 
     @property
     def blacks(self) -> Iterator[Plane]:
         """Arrow heads and other black areas, on paper."""
-        heads = (head for one in self.dimensions for head in one.heads)
-        yield from map(self.on_paper, (*heads, *self.fills))
+        heads = [head for one in self.dimensions for head in one.heads]
+        return map(self.on_paper, heads + self.fills)
 
     @property
     def words(self) -> tuple[Text, ...]:
@@ -302,26 +317,3 @@ class Sheet(ShortRepr):
 
 HATCHED: Final = 2.0
 """Distance of the lines of a hatch, mm of paper."""
-
-
-def text_box(text: Text, unit: float) -> Box:
-    """Return the bounding box of a text.
-
-    Parameters
-    ----------
-    text : Text
-        A line of text.
-    unit : float
-        Millimetres of the part in a millimetre of paper.
-
-    Returns
-    -------
-    complex, complex, mm of the part
-        Its lower left and upper right corner, with descenders.
-    """
-    wide, tall = text.width, text.height
-    start = -0.5 * wide if text.anchor == "middle" else 0.0
-    low, high = complex(start, -0.25 * tall), complex(start + wide, tall)
-    if text.upright:
-        low, high = complex(-tall, start), complex(0.25 * tall, start + wide)
-    return text.place + unit * low, text.place + unit * high

@@ -47,11 +47,8 @@ def _box(board: Board, low: complex, *cells: str) -> None:
     unit = board.unit
     for text in cells:
         wide = max(FRAME, text_width(text) + 2.0) if text else FRAME
-        high = low + complex(wide, FRAME) * unit
-        board.line(
-            DIMENSION, low, complex(high.real, low.imag), high, complex(low.real, high.imag),
-            closed=True,
-        )  # fmt: skip
+        corners = (low + unit * at for at in (0.0, wide, complex(wide, FRAME), 1j * FRAME))
+        board.line(DIMENSION, *corners, closed=True)
         if text:
             place = low + complex(0.5 * wide, 0.5 * (FRAME - HEIGHT)) * unit
             board.write(Text(text=text, place=place, anchor="middle"))
@@ -69,8 +66,8 @@ def datum(board: Board, point: complex, way: complex) -> None:
     _box(board, middle - 0.5 * FRAME * unit * (1.0 + 1j), "A")
 
 
-def frame(board: Board, point: complex, kind: str, value: str, reference: str = "") -> bool:
-    """Draw a tolerance frame with a leader to a `point`.
+def frame(board: Board, point: complex, kind: str, *cells: str) -> None:
+    """Draw a tolerance frame with a leader to a `point`; the table says it if there is no space.
 
     Parameters
     ----------
@@ -80,24 +77,17 @@ def frame(board: Board, point: complex, kind: str, value: str, reference: str = 
         On the edge that it is about.
     kind : {"runout", "profile"}
         Circular run-out, or the profile of a line.
-    value : str
-        The tolerance.
-    reference : str
-        The datum.
-
-    Returns
-    -------
-    bool
-        False if there is no space: the table has it then.
+    *cells : str
+        The tolerance, and the datum if it has one.
     """
-    unit, cells = board.unit, [one for one in (value, reference) if one]
+    unit = board.unit
     wide = FRAME + sum(max(FRAME, text_width(one) + 2.0) for one in cells)
     spot = Circle(center=point, diameter=0.02 * unit)
     found = board.place(spot, complex(wide, FRAME))
     if found is None:
         name = {"runout": "circular run-out", "profile": "profile of the outline"}[kind]
         board.rows.append((name, " ".join(cells)))
-        return False
+        return
     angle, knee = found
     spoke = cmath.rect(1.0, angle)
     bend = point + knee * spoke
@@ -113,4 +103,3 @@ def frame(board: Board, point: complex, kind: str, value: str, reference: str = 
         rise = cmath.rect(1.7 * unit, math.radians(50.0))
         board.line(DIMENSION, middle - rise, middle + rise)
         board.arrow(middle + rise, rise / abs(rise), 0.6)
-    return True

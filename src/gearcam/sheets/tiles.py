@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.pictures.drawings import Cross, Drawing, Feature, Path, box
-from gearcam.sheets.sheet import CENTERLINE, DIMENSION, RULE, Box, Sheet, Text
+from gearcam.sheets.sheet import CENTERLINE, DIMENSION, RULE, Box, Sheet, Text, text_width
 
 PAGE: Final = (210.0, 297.0)
 """A4, mm."""
@@ -28,6 +28,9 @@ OVERLAP: Final = 10.0
 
 RULER: Final = 100.0
 """Length of the ruler, mm."""
+
+_LINE: Final = 78.0
+"""Width of the text beside the ruler, mm."""
 
 PITCH: Final = WINDOW[1] - WINDOW[0] - OVERLAP * (1.0 + 1j)
 """From page to page, across and up, mm."""
@@ -45,10 +48,8 @@ def tiles(drawing: Drawing, title: str) -> Iterator[Sheet]:
     """
     low, high = box(drawing.features)
     size = high - low
-    across, up = (
-        max(1, math.ceil(way / step - 1e-9))
-        for way, step in ((size.real, PITCH.real), (size.imag, PITCH.imag))
-    )
+    across = max(1, math.ceil(size.real / PITCH.real - 1e-9))
+    up = max(1, math.ceil(size.imag / PITCH.imag - 1e-9))
     start = 0.5 * (low + high) - 0.5 * complex(across * PITCH.real, up * PITCH.imag)
     marks = tuple(
         Feature(layer=DIMENSION, shape=Cross(center=start + complex(x, y), size=OVERLAP))
@@ -57,29 +58,25 @@ def tiles(drawing: Drawing, title: str) -> Iterator[Sheet]:
     )
     if low.real < 0.0 < high.real and low.imag < 0.0 < high.imag:
         marks += (Feature(layer=CENTERLINE, shape=Cross(center=0j, size=20.0)),)
-    for row in range(up):
-        for column in range(across):
-            here = start + complex(column * PITCH.real, (up - 1 - row) * PITCH.imag)
-            corner = here - 0.5 * OVERLAP * (1.0 + 1j) - WINDOW[0]
-            words = f"{title}, {drawing.name}, 1:1, row {row + 1} of {up}, "
-            words += f"column {column + 1} of {across}"
-            yield Sheet(
-                name=drawing.name,
-                title=title,
-                paper="A4",
-                size=PAGE,
-                scale=1.0,
-                corner=corner,
-                features=(*drawing.features, *marks, *_ruler(corner + 10.0 + 11.0j)),
-                texts=(
-                    Text(text=words, place=corner + 122.0 + 11.0j, squeeze=_fit(words, 78.0)),
-                    Text(text="100 mm", place=corner + 60.0 + 15.0j, anchor="middle"),
-                ),
-            )
-
-
-def _fit(words: str, wide: float) -> float:
-    return min(1.0, wide / Text(text=words, place=0j).width)
+    for row, column in np.ndindex(up, across):
+        here = start + complex(column * PITCH.real, (up - 1 - row) * PITCH.imag)
+        corner = here - 0.5 * OVERLAP * (1.0 + 1j) - WINDOW[0]
+        place = f"row {row + 1} of {up}, column {column + 1} of {across}"
+        words = f"{title}, {drawing.name}, 1:1, {place}"
+        squeeze = min(1.0, _LINE / text_width(words))
+        yield Sheet(
+            name=drawing.name,
+            title=title,
+            paper="A4",
+            size=PAGE,
+            scale=1.0,
+            corner=corner,
+            features=[*drawing.features, *marks, *_ruler(corner + 10.0 + 11.0j)],
+            texts=[
+                Text(text=words, place=corner + 122.0 + 11.0j, squeeze=squeeze),
+                Text(text="100 mm", place=corner + 60.0 + 15.0j, anchor="middle"),
+            ],
+        )
 
 
 def _ruler(start: complex) -> tuple[Feature, ...]:

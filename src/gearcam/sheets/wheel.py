@@ -10,17 +10,20 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Final
+from typing import Any, Final, cast
 
 import numpy as np
 
+from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import decimal
 from gearcam.numeric.arrays import Plane, bounds
 from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Bevel, Opening, Part, ScrewHole
 from gearcam.parts.shapes import Circle, Loop, true_points
 from gearcam.pictures.drawings import BORE, HOLE, Drawing, placed
+from gearcam.sheets.dimensions import diameter_text
 from gearcam.sheets.sections import Section, crossings
+from gearcam.sheets.spec import DrawingNotes
 
 SAME: Final = 1e-6
 """Sizes, mm, and angles, rad, that differ by less are equal."""
@@ -37,11 +40,6 @@ class Sense:
 
     zero: float
     clockwise: bool
-
-    @property
-    def words(self) -> str:
-        """The sense of turning in words."""
-        return f"turns {'' if self.clockwise else 'counter-'}clockwise"
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -80,11 +78,6 @@ class Wheel:
     def points(self) -> Plane:
         """Points of the outline."""
         return true_points(self.part.contours[-1:])
-
-    @cached_property
-    def toothed(self) -> Plane:
-        """Points of the teeth: of a ring those of its inner edge."""
-        return true_points(self.part.inner[-1:]) if self.part.inner else self.points
 
     @cached_property
     def low(self) -> complex:
@@ -132,6 +125,11 @@ class Wheel:
         return self.bore.fits if self.bore else {}
 
     @property
+    def bore_text(self) -> str:
+        """Diameter of the bore with tolerance class and limits."""
+        return fitted(diameter_text(2.0 * self.radius), self.fits.get("diameter"))
+
+    @property
     def keyed(self) -> Loop | None:
         """The bore if it is not round."""
         shape = self.bore.shape if self.bore else None
@@ -152,28 +150,40 @@ class Wheel:
         even = np.linspace(self.low.real, self.high.real, _PLANES)[1:-1]
         tried = [one.center.real for one in holes_of(self.part)][:1] or even.tolist()
         edge, tolerance = self.part.contours[-1], self.part.tolerance
-
-        def metal(x: float) -> float:
-            return float(np.diff(crossings(edge, x, tolerance))[::2].sum())
-
-        return max(tried, key=metal)
+        return max(tried, key=lambda x: float(np.diff(crossings(edge, x, tolerance))[::2].sum()))
 
     @cached_property
     def section(self) -> Section:
         """What the plane cuts, a keyway or flat turned into it."""
         part = self.part
-        turned = {}
-        if self.keyed is not None and self.bore is not None:
-            middle = cmath.phase(complex(floor_of(self.keyed).mean()))
-            shape = placed(self.keyed, Pose(UP - middle))
-            turned[id(self.bore)] = replace(self.bore, shape=shape)
-        layers = [
-            replace(one, openings=tuple(turned.get(id(o), o) for o in one.openings))
-            for one in part.layers
-        ]
+        if self.keyed is not None:
+            turn = Pose(UP - cmath.phase(complex(floor_of(self.keyed)[1].mean())))
+            turned = replace(cast("Opening", self.bore), shape=placed(self.keyed, turn))
+            others = (turned if one is self.bore else one for one in part.openings)
+            part = replace(part, openings=tuple(others))
         # chamfers are told in words; a set screw is turned into the plane
         pockets = [one for one in part.pockets if not isinstance(one, Bevel | ScrewHole)]
-        return Section(layers=layers, pockets=pockets, x=self.plane, tolerance=part.tolerance)
+        return Section(layers=part.layers, pockets=pockets, x=self.plane, tolerance=part.tolerance)
+
+
+def check_runout(notes: DrawingNotes, parts: Sequence[Part]) -> None:
+    """Refuse run-out in the `notes` of a drawing without a bore.
+
+    Parameters
+    ----------
+    notes : DrawingNotes
+        What the drawing says.
+    parts : sequence of Part
+        What it shows.
+
+    Raises
+    ------
+    InfeasibleError
+        If none of them has a bore.
+    """
+    if notes.runout and not any(one.kind == BORE for part in parts for one in part.openings):
+        what = "run-out is about a bore, and no part has one"
+        raise InfeasibleError(what, where="drawing.runout_mm", nearest="blank.bore_diameter_mm")
 
 
 def holes_of(part: Part) -> list[Circle]:
@@ -182,13 +192,14 @@ def holes_of(part: Part) -> list[Circle]:
     return [one for one in shapes if isinstance(one, Circle)]
 
 
-BORES: Final = {3: "flat", 4: "flats", 5: "keyway"}
-"""What a bore that is not round has, by the corners of its loop."""
+BORES: Final = {3: ("flat", [0, -1]), 4: ("flats", [0, 1]), 5: ("keyway", [-2, -1])}
+"""What a bore that is not round has, and where its floor ends, by the corners of its loop."""
 
 
-def floor_of(keyed: Loop) -> Plane:
-    """Return both ends of the floor of a keyway, or of the first flat."""
-    return keyed.points[{3: [0, -1], 4: [0, 1], 5: [-2, -1]}[len(keyed.points)]]
+def floor_of(keyed: Loop) -> tuple[str, Plane]:
+    """Return what a `keyed` bore has, and both ends of the floor of it, or of its first flat."""
+    kind, ends = BORES[len(keyed.points)]
+    return kind, keyed.points[ends]
 
 
 def fitted(words: str, fit: Any) -> str:
@@ -199,8 +210,3 @@ def fitted(words: str, fit: Any) -> str:
     if fit.lower != -fit.upper:
         limits = "/".join(f"{'+' * (one > 0)}{decimal(one)}" for one in (fit.upper, fit.lower))
     return f"{words} {fit.tolerance_class} ({limits})"
-
-
-def thread(screw: ScrewHole) -> str:
-    """Return the thread of a set screw in words."""
-    return f"set screw {screw.size}"

@@ -20,13 +20,13 @@ from gearcam.kinds.gear_pair.sheet import pair_sheet
 from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Mark, Opening, Part
 from gearcam.parts.shapes import Circle, Loop
-from gearcam.pictures.drawings import OUTLINE, Drawing, Feature, Path, placed
+from gearcam.pictures.drawings import OUTLINE, Drawing, Path, placed
 from gearcam.sheets import paper
-from gearcam.sheets.board import Board, Measure
-from gearcam.sheets.dimensions import leader
+from gearcam.sheets.board import Board
+from gearcam.sheets.dimensions import Measure, leader
 from gearcam.sheets.paper import Heading, Values, area_of, choose, scale_words, sheet_rows
 from gearcam.sheets.part import part_sheet
-from gearcam.sheets.sheet import Sheet, Text, fine, text_box, text_width
+from gearcam.sheets.sheet import Sheet, Text, fine, text_width
 from gearcam.sheets.spec import DrawingSpec
 from helpers_contour import disc_contour, gear_contour, square_contour
 from helpers_sheets import faults, heading, sheet_of
@@ -39,6 +39,11 @@ def part(radius: float, openings: tuple[Opening, ...] = (), width: float = 5.0) 
 
 def hole(x: float, y: float, diameter: float) -> Opening:
     return Opening(kind="HOLE", shape=Circle(center=complex(x, y), diameter=diameter), name="h")
+
+
+def empty() -> Board:
+    area = -50.0 - 50.0j, 50.0 + 50.0j
+    return Board(name="b", scale=1.0, paper="A4", size=(100.0, 100.0), corner=area[0], area=area)
 
 
 @pytest.mark.parametrize(
@@ -167,31 +172,33 @@ def test_what_has_no_room_goes_into_the_table() -> None:
 
 
 def test_narrow_dimensions_have_their_text_and_arrows_outside() -> None:
-    board = Board(scale=1.0, area=(-50.0 - 50.0j, 50.0 + 50.0j))
-    pairs = [Measure(first=0.0, second=2.0), Measure(first=0.0, second=40.0)]
+    board = empty()
+    pairs = [Measure(0.0, 2.0), Measure(0.0, 40.0)]
     board.measure(pairs, 0.0)
     narrow, wide = board.dimensions
-    assert text_box(narrow.text, 1.0)[0].real > 40.0  # beyond what crosses it
+    assert narrow.text.box(1.0)[0].real > 40.0  # beyond what crosses it
     assert narrow.heads[0][1].real < 0.0
     assert wide.text.place == pytest.approx(20.0 + 1j * (-19.0 + 0.8))
     assert wide.heads[0][1].real > 0.0
 
 
 def test_a_size_that_follows_from_others_is_in_parentheses() -> None:
-    board = Board(scale=1.0, area=(-50.0 - 50.0j, 50.0 + 50.0j))
-    board.measure([Measure(first=0.0, second=30.5, aside=True)], 0.0)
+    board = empty()
+    board.measure([Measure(0.0, 30.5, aside=True)], 0.0)
     assert board.dimensions[0].label == "(30.5)"
 
 
 def test_dimensions_know_their_values() -> None:
-    ring = leader(3.0 + 4.0j, 2.5, math.pi / 2, 6.0, "Ø5 max", "diameter", 1.0)
+    ring = leader(
+        Circle(center=3.0 + 4.0j, diameter=5.0), math.pi / 2, 6.0, "Ø5 max", "diameter", 1.0
+    )
     assert (ring.value, ring.label) == (5.0, "Ø5 max")
     assert ring.points == pytest.approx((3.0 + 1.5j, 3.0 + 6.5j))
     assert ring.heads[0][0] == pytest.approx(3.0 + 6.5j)
 
 
 def test_upright_texts_have_upright_boxes() -> None:
-    low, high = text_box(Text(text="abcd", place=0j, upright=True), 1.0)
+    low, high = Text(text="abcd", place=0j, upright=True).box(1.0)
     assert (high - low).imag > (high - low).real
 
 
@@ -302,12 +309,6 @@ def test_the_shaft_of_an_open_ring_may_lie_beside_its_outline() -> None:
     assert sheet.corner.real < height.points[0].real < -60.0
     lines = [one.shape for one in sheet.features if one.layer == "CENTERLINE"]
     assert min(line.points.real.min() for line in lines if isinstance(line, Path)) < -60.0
-
-
-def test_nothing_is_not_drawn() -> None:
-    mark = Feature(layer="MARK", shape=Circle(center=0j, diameter=1.0))
-    with pytest.raises(ValueError, match="nothing to draw"):
-        pair_sheet(Drawing(name="empty", features=(mark,)), 60.0, {}, heading(), pitch_radius=30.0)
 
 
 def test_every_row_of_a_sheet_is_a_fact_of_some_design(monkeypatch: pytest.MonkeyPatch) -> None:

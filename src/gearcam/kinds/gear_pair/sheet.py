@@ -13,18 +13,18 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.numeric.arrays import Plane, bounds
+from gearcam.numeric.arrays import bounds
 from gearcam.numeric.contour import Contour
 from gearcam.parts.shapes import extremes, true_points
 from gearcam.pictures.drawings import CENTER, OUTLINE, Circle, Drawing, reach
-from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board, Measure
-from gearcam.sheets.paper import Heading, begin, finish
+from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board
+from gearcam.sheets.dimensions import Measure
+from gearcam.sheets.paper import NO_VALUES, Heading, begin, finish
+from gearcam.sheets.part import ABOVE, LEFT
 from gearcam.sheets.sheet import CENTERLINE, Sheet, fine
 
-LEFT: Final = 24.0
 RIGHT: Final = 20.0
-ABOVE: Final = 14.0
-"""Space for dimensions beside and above the wheels, mm of paper."""
+"""Space for dimensions on the right of the wheels, mm of paper."""
 
 POINT: Final = 2.0
 """Diameter of the ring around the pitch point, mm of paper."""
@@ -33,39 +33,19 @@ LEVELS: Final = 3
 """Linear dimensions below the wheels."""
 
 _RACK_ROWS: Final = (
-    "pair.rack.pressure_angle_deg",
-    "pair.rack.addendum",
-    "pair.rack.dedendum",
-    "pair.backlash_mm",
-    "mesh.backlash_mm",
-    "pair.face_width_mm",
-    "steps.count",
-)
+    "pair.rack.pressure_angle_deg", "pair.rack.addendum", "pair.rack.dedendum",
+    "pair.backlash_mm", "mesh.backlash_mm", "pair.face_width_mm", "steps.count",
+)  # fmt: skip
 PAIR_ROWS: Final = (
-    "pair.module_mm",
-    "pair.teeth",
-    "pair.ratio",
-    "pair.travel_per_turn_mm",
-    *_RACK_ROWS,
-)
+    "pair.module_mm", "pair.teeth", "pair.ratio", "pair.travel_per_turn_mm", *_RACK_ROWS,
+)  # fmt: skip
 _GEAR_ROWS: Final = (
-    "profile_shift",
-    "centrode.length_mm",
-    "cutter",
-    "clearance_mm",
-    "tip_rounding_mm",
-    "density_kg_m3",
-    "mass.mass_kg",
-    "mass.centroid_mm",
-    "mass.unbalance_g_mm",
-    "measuring.pin_diameter_mm",
-    "measuring.over_pins_mm",
-    "measuring.chord_mm",
-    "measuring.chord_depth_mm",
-    "measuring.constant_chord_mm",
-    "measuring.constant_chord_depth_mm",
+    "profile_shift", "centrode.length_mm", "cutter", "clearance_mm", "tip_rounding_mm",
+    "density_kg_m3", "mass.mass_kg", "mass.centroid_mm", "mass.unbalance_g_mm",
+    "measuring.pin_diameter_mm", "measuring.over_pins_mm", "measuring.chord_mm",
+    "measuring.chord_depth_mm", "measuring.constant_chord_mm", "measuring.constant_chord_depth_mm",
     *(f"measuring.spans.{number}.span_mm" for number in range(4)),
-)
+)  # fmt: skip
 """Facts in the tables of drawings."""
 
 
@@ -105,23 +85,25 @@ def pair_sheet(
 
     Raises
     ------
-    ValueError
-        If the drawing has no outline.
     InfeasibleError
         If it is too large for the smallest scale.
     """
-    if not drawing.contours:
-        raise ValueError(f"{drawing.name}: nothing to draw")
-    outlines = _outlines(drawing)
+    ones = sorted((f for f in drawing.features if f.kind == OUTLINE), key=lambda one: one.layer)
+    # the driver's first
+    outlines = [one.shape for one in ones if isinstance(one.shape, Contour | Circle)]
     points = true_points(outlines)
     shafts = (0.0, center_distance) if center_distance else (0.0,)
     # the shaft of an open ring lies beside its outline
     low, high = bounds(np.append(points, shafts))
     below = FIRST_LEVEL + LEVEL * LEVELS
     room = complex(LEFT, below), complex(RIGHT, ABOVE)
-    board = begin(high - low, room, low, len(facts) + 2)
-    _views(board, drawing, shafts)
-    _sizes(board, points, center_distance, pitch_radius, low.real)
+    board = begin(drawing.name, high - low, room, low, len(facts) + 2, 0.0)
+    _views(board, drawing, outlines, shafts)
+    left, lowest, right, highest = extremes(points)
+    across = [Measure(0.0, pitch_radius), Measure(left, right)]
+    across += [Measure(0.0, center_distance)] if center_distance else []
+    board.measure(across, lowest.imag)
+    board.measure([Measure(lowest, highest)], low.real, vertical=True)
     board.draw(CENTERLINE, Circle(center=pitch_radius, diameter=POINT * board.unit))
     board.label(pitch_radius, "pitch point")
     for number, shaft in enumerate(shafts, start=1):
@@ -132,35 +114,19 @@ def pair_sheet(
         "Chain lines: centrodes; they touch at the pitch point.",
         "Make each wheel from its own drawing and file.",
     ]
-    return finish(board, heading, name=drawing.name, facts=facts, notes=notes)
+    return finish(board, heading, facts, notes, NO_VALUES)
 
 
-def _outlines(drawing: Drawing) -> list[Contour | Circle]:
-    """Return the outlines of both wheels, the driver's first."""
-    ones = sorted((f for f in drawing.features if f.kind == OUTLINE), key=lambda one: one.layer)
-    return [one.shape for one in ones if isinstance(one.shape, Contour | Circle)]
-
-
-def _views(board: Board, drawing: Drawing, shafts: tuple[float, ...]) -> None:
+def _views(
+    board: Board, drawing: Drawing, outlines: list[Contour | Circle], shafts: tuple[float, ...]
+) -> None:
     for feature in drawing.features:
         if feature.kind != CENTER:
             board.draw(feature.layer, feature.shape)
-    over, reached = OVERHANG * board.unit, [reach(one) for one in _outlines(drawing)]
+    over, reached = OVERHANG * board.unit, [reach(one) for one in outlines]
     for shaft, points in zip(shafts, reached, strict=False):
         low, high = bounds(points)
         start, end = complex(shaft, low.imag - over), complex(shaft, high.imag + over)
         board.line(CENTERLINE, start, end)
     low, high = bounds(np.append(np.concatenate(reached), shafts))
     board.line(CENTERLINE, low.real - over, high.real + over)
-
-
-def _sizes(
-    board: Board, points: Plane, center_distance: float, pitch_radius: float, beside: float
-) -> None:
-    """Draw the linear dimensions: pitch radius, centre distance, overall sizes left of `beside`."""
-    left, low, right, high = extremes(points)
-    across = [Measure(first=0.0, second=pitch_radius), Measure(first=left, second=right)]
-    if center_distance:
-        across.append(Measure(first=0.0, second=center_distance))
-    board.measure(across, low.imag)
-    board.measure([Measure(first=low, second=high)], beside, vertical=True)
