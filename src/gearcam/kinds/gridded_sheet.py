@@ -16,6 +16,7 @@ from gearcam.kinds.gridded import STEM, GriddedCam
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Opening, Part
+from gearcam.parts.openings import fits_of
 from gearcam.parts.shapes import Circle
 from gearcam.pictures.drawings import Drawing, box, place
 from gearcam.sheets.paper import Heading, Values, sheet_rows
@@ -76,7 +77,8 @@ def cam_sheet(
     else:
         bore = 2.0 * result.turned_bore
         shape = Circle(center=0j, diameter=bore) if bore else None
-        openings = (Opening(kind="BORE", shape=shape, name="bore"),) if shape else ()
+        fits = fits_of(diameter=design.blank.bore_diameter)
+        openings = (Opening(kind="BORE", shape=shape, name="bore", fits=fits),) if shape else ()
         part = Part(name=STEM, contours=(outline,), width=length, openings=openings)
     check_runout(design.drawing, [part])
     steps, places = min(result.solid_steps, _STEPS), min(design.output.wall_points, _PLACES)
@@ -88,11 +90,14 @@ def cam_sheet(
     name, values = column
     tabled = zip(theta.tolist(), values(np.radians(theta)).tolist(), strict=True)
     table = [(decimal(angle), decimal(value)) for angle, value in tabled]
+    # the roller runs round a cam against its rotation
+    theta_there = "0 to 360" if result.cam.clockwise else "360 to 0"
+    title = f"{texts[0]}, azimuth 0 to 360 deg, theta {theta_there} deg"
     return part_sheet(
         part,
         sheet_rows(result.facts, rows),
         Heading(title=design.name, notes=design.drawing),
         turning=Sense(zero=0.0, clockwise=result.cam.clockwise),
         values=Values(title=("theta, deg", name), rows=table),
-        unrolled=Unrolled(loops=loops, drawing=unrolled, title=texts[0], note=texts[1]),
+        unrolled=Unrolled(loops=loops, drawing=unrolled, title=title, note=texts[1]),
     )

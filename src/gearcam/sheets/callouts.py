@@ -1,7 +1,7 @@
 """What stands on leaders in the views of a part: radii, holes, marks, tolerance frames, arrows.
 
 Holes of one size at equal angles on one circle are a *pattern*, with one diameter, the circle and
-the direction of the first; other holes have a letter, and their positions in the table.
+the direction of the first; other holes have a number, and their positions in the table.
 
 Depends on parts, drawings and sheets.
 """
@@ -16,6 +16,7 @@ import numpy as np
 
 from gearcam.base.numerals import decimal
 from gearcam.parts.body import Part, ScrewHole
+from gearcam.parts.fits import FitSize
 from gearcam.parts.shapes import Circle, Loop, true_points
 from gearcam.pictures.drawings import SLOT
 from gearcam.sheets.board import OVERHANG, Board
@@ -23,7 +24,7 @@ from gearcam.sheets.dimensions import diameter_text
 from gearcam.sheets.paper import Heading
 from gearcam.sheets.sheet import CENTERLINE, DIMENSION, fine
 from gearcam.sheets.symbols import frame
-from gearcam.sheets.wheel import SAME, Sense, Wheel, holes_of
+from gearcam.sheets.wheel import SAME, Sense, Wheel, fitted, holes_of
 
 _NEAR: Final = 0.1
 """Angle to both sides of theta = 0 at which the outline is looked at, rad."""
@@ -70,7 +71,8 @@ def callouts(board: Board, wheel: Wheel, side: float) -> None:
         if opening.kind == SLOT and isinstance(opening.shape, Loop):
             _slot(board, opening.shape)
     if part.screw is not None:
-        edge = complex(side - part.ends[0] + part.screw.middle, -part.screw.edge.reach)
+        up = wheel.screwed[0] * part.screw.edge.reach
+        edge = complex(side - part.ends[0] + part.screw.middle, up)
         board.label(edge, thread(part.screw))
     for mark in part.marks:
         words = f"{diameter_text(mark.diameter)}, {decimal(mark.depth)} deep"
@@ -102,8 +104,7 @@ def _holes(board: Board, part: Part, origin: complex) -> None:
     for group in patterns:
         _ring(board, group)
     named = [
-        (hole, f"H{number} {diameter_text(hole.diameter)}")
-        for number, hole in enumerate(singles, start=1)
+        (hole, f"hole {number} {hole_text(hole)}") for number, hole in enumerate(singles, start=1)
     ]
     for hole in singles:
         board.centre(hole)
@@ -114,6 +115,12 @@ def _holes(board: Board, part: Part, origin: complex) -> None:
     for hole, words in named:
         at = hole.center - origin
         board.rows.append((words, f"X {decimal(at.real)}  Y {decimal(at.imag)}"))
+
+
+def hole_text(hole: Circle) -> str:
+    """Return the diameter of a hole, with tolerance class and limits if it has them."""
+    size = hole.diameter
+    return fitted(diameter_text(size), size if isinstance(size, FitSize) else None)
 
 
 def _even(circles: list[Circle]) -> bool:
@@ -137,7 +144,7 @@ def _ring(board: Board, circles: list[Circle]) -> None:
 
 def _pattern(board: Board, circles: list[Circle]) -> None:
     one, count = circles[0], len(circles)
-    first, words = cmath.phase(one.center), f"{count} x {diameter_text(one.diameter)}"
+    first, words = cmath.phase(one.center), f"{count} x {hole_text(one)}"
     board.callout(one, words)
     # the arrow points at the circle between two holes
     between = first + math.pi / count * np.array([1.0, 3.0, -1.0, -3.0, 0.5, -0.5, 1.5, -1.5])

@@ -16,9 +16,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Final
 
+from gearcam.base import readable
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.facts import Facts, NamedFact
-from gearcam.base.numerals import formatted
+from gearcam.base.numerals import decimal, formatted
 from gearcam.parts.shapes import Circle
 from gearcam.sheets.board import Board
 from gearcam.sheets.sheet import DIMENSION, FRAME, HEIGHT, RULE, SERIES, Sheet, Text, text_width
@@ -56,8 +57,11 @@ SCALES: Final = tuple(b * 10.0**power for power in range(2, -7, -1) for b in (5.
 ALONE: Final = 36.0
 """Space for dimensions beside a view that stands below the others, mm."""
 
-_FEW: Final = 4
-"""Digits of numbers in rows with several numbers."""
+_FINE: Final = 5e-4
+"""Least length, mm, and angle, deg, that a table has in thousandths."""
+
+_NONE: Final = 1e-9
+"""Lengths and angles that are 0 but for rounding."""
 
 COLUMNS: Final = 6
 """Largest number of columns of a table of values."""
@@ -183,11 +187,19 @@ def _row_text(fact: NamedFact) -> str:
     """Return a fact as a text for a drawing, which keeps the unit of its name."""
     value, unit = fact.value, fact.unit
     if isinstance(value, list):
-        return f"{' : '.join(formatted(part, _FEW) for part in value)} {unit}".rstrip()
+        return f"{' : '.join(_number(part, unit) for part in value)} {unit}".rstrip()
     if isinstance(value, Mapping):
-        ends = [formatted(end) for end in value.values()]
+        ends = [_number(end, unit) for end in value.values()]
         return f"{' to '.join(dict.fromkeys(ends))} {unit}".rstrip()
-    return f"{formatted(value)} {unit}".rstrip() if isinstance(value, float) else fact.text
+    return f"{_number(value, unit)} {unit}".rstrip() if isinstance(value, float) else fact.text
+
+
+def _number(value: float, unit: str) -> str:
+    """Return a number of a table: lengths and angles to thousandths, as they are dimensioned."""
+    if isinstance(value, int):
+        return str(value)
+    coarse = unit in ("mm", "deg") and (abs(value) >= _FINE or abs(value) < _NONE)
+    return decimal(value) if coarse else readable.number(value, unit)
 
 
 def begin(

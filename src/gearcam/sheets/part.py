@@ -170,7 +170,7 @@ def _section(board: Board, wheel: Wheel, left: float) -> None:
     if wheel.keyed is not None:
         _corner(board, wheel, wheel.keyed, left, end)
     if part.screw is not None:
-        _screw(board, part.screw, shift, wheel.radius)
+        _screw(board, wheel, part.screw, shift)
     title = complex(0.5 * (left + end), wheel.high.imag + 6.0 * board.unit)
     board.write(Text(text="A-A", place=title, height=3.5, anchor="middle"))
 
@@ -194,14 +194,16 @@ def _corner(board: Board, wheel: Wheel, bore: Loop, left: float, end: float) -> 
         board.line(EDGE, complex(left, y), complex(end, y))
 
 
-def _screw(board: Board, screw: ScrewHole, shift: float, inner: float) -> None:
-    """Draw the hole of a set screw below the bore, and say its thread and place."""
-    outer, middle = screw.edge.reach, shift + screw.middle
+def _screw(board: Board, wheel: Wheel, screw: ScrewHole, shift: float) -> None:
+    """Draw the hole of a set screw, and say its thread and place."""
+    outer, middle, (side, inner) = screw.edge.reach, shift + screw.middle, wheel.screwed
     for x in (shift + screw.low, shift + screw.high):
-        board.line(EDGE, complex(x, -inner), complex(x, -outer))
+        board.line(EDGE, complex(x, side * inner), complex(x, side * outer))
     over = OVERHANG * board.unit
-    board.line(CENTERLINE, complex(middle, -inner + over), complex(middle, -outer - over))
-    at = f"at {decimal(math.degrees(screw.angle))} deg, z {decimal(screw.middle)} mm"
+    ends = complex(middle, side * (inner - over)), complex(middle, side * (outer + over))
+    board.line(CENTERLINE, *ends)
+    turned = math.degrees(screw.angle) % 360.0
+    at = f"at {decimal(turned)} deg, z {decimal(screw.middle)} mm"
     board.rows.append((thread(screw), at))
 
 
@@ -258,4 +260,4 @@ def _bore_view(board: Board, wheel: Wheel, bore: Loop, left: float) -> None:
     datum(board, complex(x - radius, -radius - FIRST_LEVEL * unit), -1.0)
     line = complex(x, -radius - (FIRST_LEVEL + 5.0 + HEIGHT) * unit)
     board.write(Text(text=f"bore, {kind} turned up", place=line, anchor="middle"))
-    board.rows.append((f"{kind}, direction", f"{decimal(math.degrees(way))} deg"))
+    board.rows.append((f"{kind}, direction", f"{decimal(math.degrees(way) % 360.0)} deg"))

@@ -130,6 +130,19 @@ class Wheel:
         return fitted(diameter_text(2.0 * self.radius), self.fits.get("diameter"))
 
     @property
+    def screwed(self) -> tuple[float, float]:
+        """Where the section shows the set screw: above the axis, or beside a keyway below; from.
+
+        The side, 1 or -1, and the distance of the bore from the axis there, mm.
+        """
+        if self.keyed is None or self.part.screw is None:
+            return 1.0, self.radius
+        floor = complex(floor_of(self.keyed)[1].mean())
+        way = cmath.rect(1.0, self.part.screw.angle)
+        over = abs(cmath.phase(floor * way.conjugate())) < 0.1
+        return (1.0, abs(floor)) if over else (-1.0, self.radius)
+
+    @property
     def keyed(self) -> Loop | None:
         """The bore if it is not round."""
         shape = self.bore.shape if self.bore else None

@@ -117,21 +117,21 @@ def test_long_names_stay_in_their_cells(title: str) -> None:
     assert not [one for one in faults(sheet) if "squeezed" not in one]
 
 
-def test_even_holes_are_a_pattern_and_others_have_letters() -> None:
+def test_even_holes_are_a_pattern_and_others_have_numbers() -> None:
     ring = [hole(20 * math.cos(a), 20 * math.sin(a), 3.0) for a in np.radians([30, 150, 270])]
     sheet = sheet_of(part(40.0, (*ring, hole(30.0, 5.0, 4.0), hole(-29.0, 5.0, 4.0))))
     rows = dict(sheet.rows)
     assert rows["3 x Ø3"] == "on Ø40, at 30 deg"
-    assert rows["H1 Ø4"] == "X 30  Y 5"
-    assert rows["H2 Ø4"] == "X -29  Y 5"
+    assert rows["hole 1 Ø4"] == "X 30  Y 5"
+    assert rows["hole 2 Ø4"] == "X -29  Y 5"
     labels = {one.label for one in sheet.dimensions}
-    assert {"3 x Ø3", "Ø40", "H1 Ø4", "H2 Ø4"} <= labels
+    assert {"3 x Ø3", "Ø40", "hole 1 Ø4", "hole 2 Ø4"} <= labels
 
 
 def test_holes_that_are_nearly_even_are_no_pattern() -> None:
     ring = [hole(20 * math.cos(a), 20 * math.sin(a), 3.0) for a in np.radians([30, 150, 270.01])]
     rows = dict(sheet_of(part(40.0, tuple(ring))).rows)
-    assert set(rows) == {"H1 Ø3", "H2 Ø3", "H3 Ø3"}
+    assert set(rows) == {"hole 1 Ø3", "hole 2 Ø3", "hole 3 Ø3"}
 
 
 def test_a_stop_slot_is_told() -> None:

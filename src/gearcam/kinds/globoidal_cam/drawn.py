@@ -238,7 +238,7 @@ def sheets(result: GloboidalCamResult) -> tuple[Sheet, ...]:
     drawing = Drawing(name="cam", features=chained(sheet(cam), *grooves(cam), *paths(cam)))
     column = "turret, deg", lambda at: np.degrees(result.program.derivatives(at, 0)[0])
     texts = (
-        "globoid through the rollers' middle, unrolled, azimuth 0 to 360 deg from the left",
-        "Walls: walls.csv, and the solid. The unrolled globoid is not true.",
+        "globoid unrolled",
+        "Unrolled: through the rollers' middle, not true. Walls: walls.csv, and the solid.",
     )
     return (cam_sheet(result, max(result.rims), drawing, SHEET_ROWS, column, texts),)

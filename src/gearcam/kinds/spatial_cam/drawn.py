@@ -229,8 +229,8 @@ def sheets(result: SpatialCamResult) -> tuple[Sheet, ...]:
     if not result.design.follower.oscillating:
         name, heights = "z, mm", lambda at: centers(result, at).imag
     texts = (
-        "outside, unrolled, azimuth 0 to 360 deg from the left; chain line: roller's middle",
-        "Walls: walls.csv, and the solid. z from the back.",
+        "outside unrolled",
+        "Chain line: roller's middle. Walls: walls.csv, and the solid. z from the back.",
     )
     radius, outside = result.cam.outer_radius, developed_drawing(result)
     return (cam_sheet(result, radius, outside, SHEET_ROWS, (name, heights), texts),)
