@@ -48,7 +48,7 @@ _MM: Final = re.compile(
 )
 """The unit at the end of a name that is a length, an area, a volume, or one of them per time."""
 
-_IN: Final = re.compile(r"_in(?=(?:_s|_min|_per_rad\d?)?(?!\w))")
+_IN: Final = re.compile(r"(?<!\bmodule)_in(?=(?:_s|_min|_per_rad\d?)?(?!\w))")
 
 _NUMBER: Final = r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
 _SET: Final = re.compile(
@@ -68,11 +68,8 @@ _MEASURE: Final = re.compile(
 )
 """Numbers with a unit of length behind them."""
 
-_FIT: Final = re.compile(rf"\s*({_NUMBER})(\s*[A-Za-z]{{1,2}}\d{{1,2}}\s*)")
+_FIT: Final = rf"({_NUMBER})(\s*[A-Za-z]{{1,2}}\d{{1,2}})"
 """A size with a tolerance class, such as 25 H7."""
-
-_SIZED: Final = re.compile(rf'"({_NUMBER})(\s*[A-Za-z]{{1,2}}\d{{1,2}})"')
-"""The same in a message."""
 
 _UNIT: Final = re.compile(r"(mm|um)([23]?)((?:/.*)?)")
 _ENDS: Final = re.compile(rf"from ({_NUMBER}) to ({_NUMBER}) mm")
@@ -82,17 +79,12 @@ _T = TypeVar("_T")
 
 def key_in(key: str) -> str:
     """Return a name as it is in inches: ``blank.rim_in`` for ``blank.rim_mm``."""
-    return spelt_in(re.sub(rf"\b{_MODULE}\b", _PITCH, key))
-
-
-def spelt_in(key: str) -> str:
-    """Return the same with ``module_in`` for a module, as files may have it, too."""
-    return _MM.sub(r"_in\g<power>", key)
+    return _MM.sub(r"_in\g<power>", re.sub(rf"\b{_MODULE}\b", _PITCH, key))
 
 
 def spellings_in(key: str) -> list[str]:
     """Return the keys for what is in mm that a file in inches may have, the usual one first."""
-    return list(dict.fromkeys((key_in(key), spelt_in(key), key)))
+    return list(dict.fromkeys((key_in(key), key)))
 
 
 def key_mm(key: str) -> str:
@@ -120,12 +112,20 @@ def _pitch(value: float) -> float:
 
 
 def each(value: Any, change: Callable[[float], float]) -> Any:
-    """Return a value with its numbers changed, also those in lists and in sizes with a fit."""
+    """Return a value with its numbers changed, also those in lists and in sizes with a fit.
+
+    Parameters
+    ----------
+    value : object
+        Of a design file; what is neither stays as it is.
+    change : callable
+        ``change(number)`` returns another number.
+    """
     if isinstance(value, list | tuple):
         return [each(one, change) for one in value]
     if hasattr(value, "tolerance_class"):
         value = str(value)
-    if isinstance(value, str) and (fit := _FIT.fullmatch(value)):
+    if isinstance(value, str) and (fit := re.fullmatch(_FIT, value.strip())):
         return repr(change(float(fit[1]))).removesuffix(".0") + fit[2]
     if isinstance(value, bool) or not isinstance(value, int | float):
         return value
@@ -271,7 +271,7 @@ def telling(units: str) -> Iterator[None]:
 
 def text_in(text: str) -> str:
     """Return a text with its keys and lengths in inches; limits stay on their side."""
-    text = _SIZED.sub(lambda size: f'"{formatted(float(size[1]) / INCH)}{size[2]}"', text)
+    text = re.sub(f'"{_FIT}"', lambda size: f'"{formatted(float(size[1]) / INCH)}{size[2]}"', text)
     text = _SET.sub(_set_in, text)
     text = _MEASURE.sub(_measured_in, text)
     return re.sub(r"\bin mm\b", "in inches", key_in(text))

@@ -39,7 +39,7 @@ _MARKS: Final = ("rotation_arrow", "zero_mark")
 """What a part is marked with when it is known how it is made."""
 
 
-class Line(NamedTuple):
+class KeyLine(NamedTuple):
     """A key with its value, or the head of a table, and what is said beside it.
 
     Parameters
@@ -71,6 +71,9 @@ class Line(NamedTuple):
         return "\n".join([f"{text:<{_COLUMN - 1}} # {first}", *rest])
 
 
+Lines = Iterator[KeyLine | str]
+
+
 def template(kind: str, name: str = "", process: str = "", units: str = UNITS[0]) -> str:
     """Return the text of a commented design file that builds as it is.
 
@@ -95,7 +98,7 @@ def template(kind: str, name: str = "", process: str = "", units: str = UNITS[0]
     return "\n".join(str(one if units == "mm" else _in_inches(one)) for one in lines) + "\n"
 
 
-def _in_inches(line: Line | str) -> Line | str:
+def _in_inches(line: KeyLine | str) -> KeyLine | str:
     """Return a line in inches.
 
     A length that is given, or is an example, becomes a round one that is 1.6 % longer, so that all
@@ -146,13 +149,13 @@ def process_problem(kind: str, process: str) -> Problem | None:
     return Problem(message, key="--for", allowed=", ".join(own) or "leave it out", hint=hint)
 
 
-def _lines(kind: DesignKind, name: str, process: str, units: str) -> Iterator[Line | str]:
+def _lines(kind: DesignKind, name: str, process: str, units: str) -> Lines:
     more = _preset(kind, process) if process else {}
     yield _HEADER.format(doc=f"{kind.doc[0].upper()}{kind.doc[1:]}")
     yield f'kind = "{kind.name}"'
     if units != "mm":
-        yield Line("units", units, "of lengths: keys end in _in")
-    yield Line("name", name, "name of the output folder")
+        yield KeyLine("units", units, "of lengths: keys end in _in")
+    yield KeyLine("name", name, "name of the output folder")
     for title in (*kind.tree, "limits"):
         note, given = kind.notes.get(title, ""), kind.example.get(title, {})
         if title in kind.nodes:
@@ -175,7 +178,7 @@ def _preset(kind: DesignKind, process: str) -> Mapping[str, Mapping[str, Any]]:
     }
 
 
-def _node(node: Node, title: str, example: Any, note: str) -> Iterator[Line | str]:
+def _node(node: Node, title: str, example: Any, note: str) -> Lines:
     """Yield the lines of a node: those of an `example`, then others as comments."""
     if isinstance(node, Either):
         first, *rest = (case.node() for case in node.cases)
@@ -193,24 +196,22 @@ def _node(node: Node, title: str, example: Any, note: str) -> Iterator[Line | st
             yield from _chosen(node.item, one)
         yield from _others(node.item, example, f"[[{title}]]")
     else:
-        yield from ("", Line(f"[{title}]", None, note))
+        yield from ("", KeyLine(f"[{title}]", None, note))
         yield from _chosen(node, example)
         yield from _others(node, [example], "")
 
 
-def _chosen(node: Keys | Choice, given: Mapping[str, Any], mark: str = "") -> Iterator[Line | str]:
+def _chosen(node: Keys | Choice, given: Mapping[str, Any], mark: str = "") -> Lines:
     """Yield the lines of a table, as comments if `mark` is ``# ``; words without a value end it."""
     known = joined([*levels_of(node, given)], "")
     while isinstance(node, Choice) and node.tag in given:
         word = given[node.tag]
-        yield Line(node.tag, word, node.about(word), mark)
+        yield KeyLine(node.tag, word, node.about(word), mark)
         node = node.node(word)
     yield from entry_lines(known, given)
 
 
-def _others(
-    node: Keys | Choice, examples: Sequence[Mapping[str, Any]], head: str
-) -> Iterator[Line | str]:
+def _others(node: Keys | Choice, examples: Sequence[Mapping[str, Any]], head: str) -> Lines:
     """Yield comments on what else could be chosen; a table that may stand again has a `head`."""
     if not isinstance(node, Choice):
         return
@@ -239,10 +240,10 @@ def _shown(table: Table, examples: Mapping[str, Any]) -> Table:
     return Table(table.title, table.owner, entries)
 
 
-def _table(head: str, table: Table, given: Mapping[str, Any], note: str) -> Iterator[Line | str]:
+def _table(head: str, table: Table, given: Mapping[str, Any], note: str) -> Lines:
     if table.entries:
         yield ""
-        yield Line(head, None, note) if given else f"# {head}"
+        yield KeyLine(head, None, note) if given else f"# {head}"
         designs = {key: one for key, one in given.items() if isinstance(one, Mapping)}
         rest = {key: entry for key, entry in table.entries.items() if key not in designs}
         yield from entry_lines(Table(table.title, table.owner, rest), given)
@@ -250,20 +251,20 @@ def _table(head: str, table: Table, given: Mapping[str, Any], note: str) -> Iter
             yield from _nested(f"{head.strip('[]')}.{key}", design, description(table.entries[key]))
 
 
-def _nested(path: str, design: Mapping[str, Any], words: str = "") -> Iterator[Line | str]:
+def _nested(path: str, design: Mapping[str, Any], words: str = "") -> Lines:
     """Yield the lines of a nested design, without comments on its keys."""
     plain = {key: one for key, one in design.items() if not _is_table(one)}
     if plain or words:
         yield ""
-        yield Line(f"[{path}]", None, words)
-        yield from (Line(key, one, "") for key, one in plain.items())
+        yield KeyLine(f"[{path}]", None, words)
+        yield from (KeyLine(key, one, "") for key, one in plain.items())
     for key, one in design.items():
         if isinstance(one, Mapping):
             yield from _nested(f"{path}.{key}", one)
         elif _is_table(one):
             for item in one:
                 yield from ("", f"[[{path}.{key}]]")
-                yield from (Line(name, value, "") for name, value in item.items())
+                yield from (KeyLine(name, value, "") for name, value in item.items())
 
 
 def _is_table(value: Any) -> bool:
@@ -271,33 +272,33 @@ def _is_table(value: Any) -> bool:
     return bool(tables) and all(isinstance(one, Mapping) for one in tables)
 
 
-def entry_lines(table: Table, given: Mapping[str, Any]) -> Iterator[Line | str]:
+def entry_lines(table: Table, given: Mapping[str, Any]) -> Lines:
     """Yield a line for each key of a `table`: those `given`, and the others as comments."""
     for key, entry in table.entries.items():
         if key in given:
-            yield Line(key, given[key], description(entry))
+            yield KeyLine(key, given[key], description(entry))
         else:
             yield comment_line(entry)
 
 
-def comment_line(entry: Key) -> Line:
+def comment_line(entry: Key) -> KeyLine:
     """Return the line of an optional key: with its default, or with an example."""
     if entry.default in (None, REQUIRED):
         words = f"(example) {description(entry)}"
-        return Line(entry.key, entry.param.example, words, "# ")
+        return KeyLine(entry.key, entry.param.example, words, "# ")
     value = entry.outward(entry.default)
     if entry.param.both and len(set(value)) == 1:
         value = value[0]
-    return Line(entry.key, value, description(entry), "# ")
+    return KeyLine(entry.key, value, description(entry), "# ")
 
 
-def law_comment(key: str, name: str, entry: Any, table: Table) -> Iterator[Line | str]:
+def law_comment(key: str, name: str, entry: Any, table: Table) -> Lines:
     """Yield comments on a law, with the values of an example: `key`, `name`, `entry`, `table`."""
     given = table.document(entry.example)
     yield "#"
-    yield Line(key, name, entry.doc, "# ")
+    yield KeyLine(key, name, entry.doc, "# ")
     for key, item in table.entries.items():
         if key in given:
-            yield Line(key, given[key], description(item), "# ")
+            yield KeyLine(key, given[key], description(item), "# ")
         else:
             yield f"#   or {key}: {item.param.doc}"

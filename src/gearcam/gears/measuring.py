@@ -72,7 +72,7 @@ class Measuring(ShortRepr):
             return self.over.recommended, self.over.pins(self.over.recommended)
         pins = self.over.pins(diameter)
         if np.isnan(pins.center).all():
-            ends = [one.diameter for one in self.over.limits]
+            ends = self.over.thinnest.diameter, self.over.thickest.diameter
             near, limit = self.over.recommended, None
             if np.isfinite(ends[0]).any():
                 limit = float(np.clip(diameter, np.nanmin(ends[0]), np.nanmax(ends[1])))
@@ -90,7 +90,7 @@ class Measuring(ShortRepr):
         diameter : float, optional, mm
             Of the pins; by default the recommended one.
         """
-        (diameter, pins), (thin, thick) = self.pins(diameter), self.over.limits
+        diameter, pins = self.pins(diameter)
         count, there = len(self.numbers), np.arange(len(pins.over))
 
         def filled(values: Array, rows: Ints) -> Array:
@@ -101,8 +101,8 @@ class Measuring(ShortRepr):
         turns = np.nan if self.outline.toothing.track.slides else 1.0
         alone = np.isnan(pins.over) | (pins.opposite == there)
         of_spaces = {
-            "pin_least_mm": thin.diameter,
-            "pin_most_mm": thick.diameter,
+            "pin_least_mm": self.over.thinnest.diameter,
+            "pin_most_mm": self.over.thickest.diameter,
             "x_mm": pins.center.real,
             "y_mm": pins.center.imag,
             "center_radius_mm": turns * np.abs(pins.center),

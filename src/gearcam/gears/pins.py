@@ -156,9 +156,14 @@ class PinMeasures(ShortRepr):
         return Spaces.of(self.outline)
 
     @cached_property
-    def limits(self) -> tuple[PinLimits, PinLimits]:
-        """The thinnest and the thickest pins that touch both flanks."""
-        return self._inside(0.0)
+    def thinnest(self) -> PinLimits:
+        """The thinnest pins that touch both flanks."""
+        return self._limit(self.spaces.lowest, self.spaces.highest, 1.0)
+
+    @cached_property
+    def thickest(self) -> PinLimits:
+        """The thickest pins that touch both flanks."""
+        return self._limit(self.spaces.highest, self.spaces.lowest, -1.0)
 
     def _inside(self, share: float) -> tuple[PinLimits, PinLimits]:
         """Return the thinnest and the thickest pins that do not touch a `share` of both ends."""
@@ -206,7 +211,7 @@ class PinMeasures(ShortRepr):
 
     def pins(self, diameter: float) -> Pins:
         """Return the pins of a `diameter`, mm, in all spaces."""
-        thin, thick = self.limits
+        thin, thick = self.thinnest, self.thickest
         at = np.flatnonzero((thin.diameter <= diameter) & (diameter <= thick.diameter))
         places = np.full((3, len(thin.diameter)), complex(np.nan, np.nan))
         if at.size:
@@ -219,7 +224,10 @@ class PinMeasures(ShortRepr):
         toothing = self.toothing
         sf, sigma = self.spaces.sf[:, at], np.repeat(SIDES, len(at), axis=1)
         moved = sf + sigma * 0.5 * diameter / math.cos(toothing.cutter.alpha)
-        ends = (toothing.track.angle(sf - sigma * one.reach[:, at]) for one in self.limits)
+        ends = (
+            toothing.track.angle(sf - sigma * one.reach[:, at])
+            for one in (self.thinnest, self.thickest)
+        )
         phi, met = flank_crossings(toothing, moved, sigma, *ends)
         frames = toothing.frames(phi)
         places[0, at[met]] = toothing.flank_points(frames, moved, sigma)[0, met]
@@ -302,7 +310,7 @@ class PinMeasures(ShortRepr):
         It touches the flanks near their middle in all spaces, stands out and clears the root. Where
         no pin does so in all spaces, it is that of the middle space.
         """
-        least, most = (one.diameter for one in self.limits)
+        least, most = self.thinnest.diameter, self.thickest.diameter
         there, module = np.isfinite(least + most), self.toothing.pitch / math.pi
         if not there.any():
             return 0.5 * self.toothing.pitch

@@ -52,8 +52,8 @@ ROUND: Final = 4
 """Chords of the blank for each position of a roller that cuts a solid: the error of its volume is
 that of the walls then."""
 
-_FINE: Final = 1e-3
-"""Chord tolerance of hub, openings and marks, mm."""
+FINE: Final = 1e-3
+"""Chord tolerance of hub, openings, marks and drawings, mm."""
 
 _COARSE: Final = math.radians(4.0)
 """Least steps of the driver in a draft: the solid's volume is good to a thousandth."""
@@ -224,7 +224,7 @@ class GriddedCam(LoadedCam, Result):
         with self.stage("blank"):
             made = make_part(
                 STEM,
-                [edge.contour(_FINE)],
+                [edge.contour(FINE)],
                 length,
                 replace(blank, chamfer=0.0),
                 work,
