@@ -322,7 +322,8 @@ class Translating(Form[TranslatingCam, PlateSpec, PlateFollower]):
 
     def _cut(self, cam: TranslatingCam) -> TranslatingCam:
         """Return the finished cam: a single wall is moved back by the clearance of the blank."""
-        return replace(cam, lower=lowered(cam.lower, self.blank.clearance))
+        lower = lowered(cam.lower, self.blank.clearance)
+        return cam if lower is cam.lower else replace(cam, lower=lower)
 
     def finished(self, cam: TranslatingCam, parts: Parts) -> tuple[Contour, ...]:  # noqa: ARG002
         """Return the metal behind each wall, as made (see `Form.finished`)."""
