@@ -232,8 +232,7 @@ class GriddedCam(LoadedCam, Result):
                 way=-1.0 if self.cam.clockwise else 1.0,
             )
             outside = [Circle(center=0j, diameter=2.0 * one) for one in self.rims]
-            made_bevels = bevels(made, blank.chamfer, work, outside)
-            return replace(made, bevels=tuple(made_bevels))
+            return replace(made, bevels=tuple(bevels(made, blank.chamfer, work, outside)))
 
     @cached_property
     def sheets(self) -> tuple[Sheet, ...]:
