@@ -283,7 +283,7 @@ def _set_in(found: re.Match[str]) -> str:
         return found[0]
     change = (lambda mm: INCH / mm) if _MODULE in key else (lambda mm: mm / INCH)
     told = re.sub(
-        _NUMBER,
+        f'(?<!"){_NUMBER}',  # sizes with classes are in inches already
         lambda one: formatted(change(float(one[0])), min(max(_digits(one[0]) + 3, 6), 8)),
         value,
     )
