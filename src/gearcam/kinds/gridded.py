@@ -346,7 +346,7 @@ class GriddedCam(LoadedCam, Result):
         from gearcam.parts.checks import CheckedParts
 
         subject = CheckedParts(parts=(self.core,), names=(STEM,), edge="floor of the groove")
-        return CHECKS[PARTS, "thin-wall"].run(subject, limit)
+        return tuple(CHECKS[PARTS, "thin-wall"].run(subject, limit))
 
     @cached_property
     def checked(self) -> tuple[Finding, ...]:

@@ -9,7 +9,6 @@ Depends on parts' shapes; shapely inside the functions.
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Iterator
 from dataclasses import replace
@@ -111,12 +110,13 @@ def _arcs(free: Polygon, way: complex, line: float, core: float) -> Iterator[Loo
 def _arc(radius: float, middle: float, sweep: float, hand: float, line: float) -> Loop:
     """Return an arrow along an arc about the origin, counter-clockwise if `hand` is 1."""
     flat = np.roll(_corners(radius * sweep, line), 1)
-    points = (radius - flat.imag) * np.exp(1j * hand * flat.real / radius)
+    angles = middle + hand * flat.real / radius
+    points = np.asarray((radius - flat.imag) * np.exp(1j * angles), dtype=np.complex128)
     bend = math.tan(0.25 * (sweep - _HEAD[1] * line / radius))
     bulges = hand * bend * np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0])
     if hand < 0.0:  # mirrored: the other way round
         points, bulges = points[::-1], -np.roll(bulges[::-1], -1)
-    return Loop(points=points * cmath.exp(1j * middle), bulges=bulges)
+    return Loop(points=points, bulges=bulges)
 
 
 def _corners(length: float, line: float) -> Plane:
