@@ -68,4 +68,4 @@ def test_a_design_in_inches_is_the_one_in_mm(
     for one, other in zip(wrong, found, strict=True):
         if other.file == str(inch):
             assert other.key in (one.key, *spellings_in(one.key)), (one, other)
-            assert not re.search(r"(?<![\w/])(?<!N )mm\b|(?<!_n)_mm\b", str(other)), other
+            assert not re.search(r"(?<![\w/])(?<!N )mm\b|(?<!_n)(?<!_n_s)_mm\b", str(other)), other

@@ -48,12 +48,12 @@ _MM: Final = re.compile(
 )
 """The unit at the end of a name that is a length, an area, a volume, or one of them per time."""
 
-_IN: Final = re.compile(r"_in(?=(?:_s|_min|_per_rad\d?)?(?!\w))")
+_IN: Final = re.compile(r"(?<!\bmodule)_in(?=(?:_s|_min|_per_rad\d?)?(?!\w))")
 
-NUMBER: Final = r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
+_NUMBER: Final = r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
 _SET: Final = re.compile(
     r"(?P<key>[\w.\[\]]*_mm\w*(?:\[\d+\])?)(?P<sign> = | (?:of |may be )?(?:up to )?)"
-    rf"(?P<value>(?>{NUMBER}(?: \+ {NUMBER})?)(?! [mu]m)|\[[^\]]*\])"
+    rf"(?P<value>(?>{_NUMBER}(?: \+ {_NUMBER})?)(?! [mu]m)|\[[^\]]*\])"
 )
 """A key and its value in a message."""
 
@@ -61,38 +61,30 @@ _UP: Final = ("from", "above", "least", "more than")
 _SIDES: Final = "|".join((*_UP, "to", "below", "most", "less than"))
 _WORD: Final = rf"(?:(?P<word>{_SIDES}) )?"
 _MEASURE: Final = re.compile(
-    rf"(?P<numbers>(?:(?:{_SIDES}) )?{NUMBER}"
+    rf"(?P<numbers>(?:(?:{_SIDES}) )?{_NUMBER}"
     r"(?:(?: to below | up to | and below (?:the \w+'s )?| to | and | or | x | by |, (?:[xyz] = )?)"
-    rf"{NUMBER})*)"
+    rf"{_NUMBER})*)"
     r" (?P<unit>[mu]m[23]?(?:/(?:s|min|rad|deg)\d?)?)(?![\w/])"
 )
 """Numbers with a unit of length behind them."""
 
-_FIT: Final = re.compile(rf"\s*({NUMBER})(\s*[A-Za-z]{{1,2}}\d{{1,2}}\s*)")
+_FIT: Final = rf"({_NUMBER})(\s*[A-Za-z]{{1,2}}\d{{1,2}})"
 """A size with a tolerance class, such as 25 H7."""
 
-_SIZED: Final = re.compile(rf'"({NUMBER})(\s*[A-Za-z]{{1,2}}\d{{1,2}})"')
-"""The same in a message."""
-
 _UNIT: Final = re.compile(r"(mm|um)([23]?)((?:/.*)?)")
-_ENDS: Final = re.compile(rf"from ({NUMBER}) to ({NUMBER}) mm")
+_ENDS: Final = re.compile(rf"from ({_NUMBER}) to ({_NUMBER}) mm")
 
 _T = TypeVar("_T")
 
 
 def key_in(key: str) -> str:
     """Return a name as it is in inches: ``blank.rim_in`` for ``blank.rim_mm``."""
-    return spelt_in(re.sub(rf"\b{_MODULE}\b", _PITCH, key))
-
-
-def spelt_in(key: str) -> str:
-    """Return the same with ``module_in`` for a module, as files may have it, too."""
-    return _MM.sub(r"_in\g<power>", key)
+    return _MM.sub(r"_in\g<power>", re.sub(rf"\b{_MODULE}\b", _PITCH, key))
 
 
 def spellings_in(key: str) -> list[str]:
     """Return the keys for what is in mm that a file in inches may have, the usual one first."""
-    return list(dict.fromkeys((key_in(key), spelt_in(key), key)))
+    return list(dict.fromkeys((key_in(key), key)))
 
 
 def key_mm(key: str) -> str:
@@ -119,13 +111,21 @@ def _pitch(value: float) -> float:
     return short if _inverse(short) == value else INCH / value
 
 
-def _each(value: Any, change: Callable[[float], float]) -> Any:
-    """Return a value with its numbers changed, also those in lists and in sizes with a fit."""
+def each(value: Any, change: Callable[[float], float]) -> Any:
+    """Return a value with its numbers changed, also those in lists and in sizes with a fit.
+
+    Parameters
+    ----------
+    value : object
+        Of a design file; what is neither stays as it is.
+    change : callable
+        ``change(number)`` returns another number.
+    """
     if isinstance(value, list | tuple):
-        return [_each(one, change) for one in value]
+        return [each(one, change) for one in value]
     if hasattr(value, "tolerance_class"):
         value = str(value)
-    if isinstance(value, str) and (fit := _FIT.fullmatch(value)):
+    if isinstance(value, str) and (fit := re.fullmatch(_FIT, value.strip())):
         return repr(change(float(fit[1]))).removesuffix(".0") + fit[2]
     if isinstance(value, bool) or not isinstance(value, int | float):
         return value
@@ -160,13 +160,12 @@ def metric(document: Mapping[str, Any]) -> tuple[dict[str, Any], list[tuple[Any,
         found: dict[str, Any] = {}
         spelt: dict[str, str] = {}
         for key, value in part.items():
-            name = key if isinstance(value, Mapping) else key_mm(key)
+            name = key_mm(key)
             if name in found:
                 twice.append(((*at, key), spelt[name]))
                 continue
             spelt[name] = key
-            change = _inverse if key == _PITCH else _inward
-            found[name] = made(value, (*at, key)) if name == key else _each(value, change)
+            found[name] = made(value, (*at, key)) if name == key else value_mm(key, value)
         return found
 
     return made(document, ()), twice
@@ -180,19 +179,23 @@ def customary(document: Mapping[str, Any]) -> dict[str, Any]:
             return [made(one, at) for one in part]
         if not isinstance(part, Mapping):
             return key_in(part) if at[:1] == ("goal",) and isinstance(part, str) else part
-        return {
-            key if isinstance(value, Mapping) else key_in(key): made(value, (*at, key))
-            if key_in(key) == key or isinstance(value, Mapping)
-            else value_in(key, value)
-            for key, value in part.items()
-        }
+        found: dict[str, Any] = {}
+        for key, value in part.items():
+            name = key_in(key)
+            found[name] = made(value, (*at, key)) if name == key else value_in(key, value)
+        return found
 
     return made(document, ())
 
 
 def value_in(key: str, value: Any) -> Any:
     """Return the value of a key in mm as that of the key in inches."""
-    return _each(value, _pitch if _MODULE in key else _outward) if key_in(key) != key else value
+    return each(value, _pitch if _MODULE in key else _outward) if key_in(key) != key else value
+
+
+def value_mm(key: str, value: Any) -> Any:
+    """Return the value of a key in inches as that of the key in mm."""
+    return each(value, _inverse if _PITCH in key else _inward) if key_mm(key) != key else value
 
 
 def changes_in(changes: Mapping[str, Any]) -> dict[str, Any]:
@@ -202,12 +205,7 @@ def changes_in(changes: Mapping[str, Any]) -> dict[str, Any]:
 
 def changes_mm(changes: Mapping[str, Any]) -> dict[str, Any]:
     """Return values by dotted keys as in a file in mm."""
-    return {
-        key_mm(key): _each(value, _inverse if _PITCH in key else _inward)
-        if key_mm(key) != key
-        else value
-        for key, value in changes.items()
-    }
+    return {key_mm(key): value_mm(key, value) for key, value in changes.items()}
 
 
 def of_pitch(allowed: str) -> str:
@@ -233,7 +231,7 @@ def both_ways(key: str, value: Any, known: Collection[str]) -> str:
     name = key_mm(key)
     if key == name or name not in known:
         return ""
-    written = _each(value, _inverse if key == _PITCH else _inward)
+    written = value_mm(key, value)
     words = f"write {name} = {_few(written)}" if isinstance(written, float) else "in mm"
     return f'did you mean {name}? ({words}, or say units = "inch" at the top of the file)'
 
@@ -273,7 +271,7 @@ def telling(units: str) -> Iterator[None]:
 
 def text_in(text: str) -> str:
     """Return a text with its keys and lengths in inches; limits stay on their side."""
-    text = _SIZED.sub(lambda size: f'"{formatted(float(size[1]) / INCH)}{size[2]}"', text)
+    text = re.sub(f'"{_FIT}"', lambda size: f'"{formatted(float(size[1]) / INCH)}{size[2]}"', text)
     text = _SET.sub(_set_in, text)
     text = _MEASURE.sub(_measured_in, text)
     return re.sub(r"\bin mm\b", "in inches", key_in(text))
@@ -285,7 +283,7 @@ def _set_in(found: re.Match[str]) -> str:
         return found[0]
     change = (lambda mm: INCH / mm) if _MODULE in key else (lambda mm: mm / INCH)
     told = re.sub(
-        NUMBER,
+        f'(?<!"){_NUMBER}',  # sizes with classes are in inches already
         lambda one: formatted(change(float(one[0])), min(max(_digits(one[0]) + 3, 6), 8)),
         value,
     )
@@ -303,7 +301,7 @@ def _measured_in(found: re.Match[str]) -> str:
         near = value if math.isclose(float(f"{value:.{digits}g}"), value, rel_tol=1e-12) else near
         return f"{one[1]} " * bool(one[1]) + formatted(near, digits)
 
-    return f"{re.sub(f'{_WORD}({NUMBER})', number, found['numbers'])} {unit}"
+    return f"{re.sub(f'{_WORD}({_NUMBER})', number, found['numbers'])} {unit}"
 
 
 def _digits(number: str) -> int:
@@ -330,9 +328,7 @@ def name_in(name: str) -> tuple[str, float]:
 
 def _times(value: Any, factor: float) -> Any:
     """Return a value with its numbers times a factor; whole numbers that are none stay so."""
-    if isinstance(value, Mapping):
-        return {name: _times(one, factor) for name, one in value.items()}
-    return _each(value, lambda one: one * factor) if factor != 1.0 else value
+    return each(value, lambda one: one * factor) if factor != 1.0 else value
 
 
 def _adjustment_in(one: Adjustment) -> Adjustment:
@@ -373,13 +369,9 @@ def _tree_in(tree: Any, factor: float = 1.0) -> Any:
         return dict(_entry_in(key, item, factor) for key, item in tree.items())
     if isinstance(tree, list | tuple):
         return [_tree_in(one, factor) for one in tree]
-    return _words_in(tree, factor) if isinstance(tree, str) else _times(tree, factor)
-
-
-def _words_in(text: str, factor: float) -> str:
-    """Return a text in inches; it may be a unit, or a size with a tolerance class."""
-    text = unit_in(text)[0] if _UNIT.fullmatch(text) else text_in(text)
-    return _times(text, factor)
+    if isinstance(tree, str):  # it may be a unit, or a size with a tolerance class
+        tree = unit_in(tree)[0] if _UNIT.fullmatch(tree) else text_in(tree)
+    return _times(tree, factor)
 
 
 def _entry_in(key: str, item: Any, factor: float) -> tuple[str, Any]:
@@ -398,15 +390,13 @@ def _fact_in(one: Fact, factor: float) -> Fact:
     if text and factor != 1.0:
         # the numbers of the value are not rounded as those of its text
         known = one.value if isinstance(one.value, list | tuple) else ()
-        numbers = iter(known if len(known) == len(re.findall(NUMBER, text)) else ())
+        numbers = iter(known if len(known) == len(re.findall(_NUMBER, text)) else ())
         text = re.sub(
-            NUMBER, lambda this: formatted(factor * float(next(numbers, this[0])), FEW), text
+            _NUMBER, lambda this: formatted(factor * float(next(numbers, this[0])), FEW), text
         )
     return replace(
         one,
-        value=_words_in(one.value, factor)
-        if isinstance(one.value, str)
-        else _times(one.value, factor),
+        value=_tree_in(one.value, factor),
         meaning=text_in(one.meaning),
         at_least=_times(one.at_least, factor),
         at_most=_times(one.at_most, factor),

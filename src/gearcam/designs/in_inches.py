@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from gearcam.base.inches import INCH, key_in, of_pitch, spelt_in, told, unit_in, value_in
+from gearcam.base.inches import INCH, key_in, of_pitch, told, unit_in, value_in
 from gearcam.base.quantities import Quantity, unit_of
 from gearcam.designs.faults import MISSING, Fault, show
 from gearcam.designs.measures import measure_hint
@@ -61,7 +61,7 @@ def entry_in(entry: Key, key: str) -> Key:
         ends |= {"ge": ends["le"], "le": ends["ge"]}
         unit = Quantity("", 1.0, "1/in")
     else:
-        suffix, named = spelt_in(quantity.suffix), unit_in(quantity.unit)[0]
+        suffix, named = key_in(quantity.suffix), unit_in(quantity.unit)[0]
         unit = Quantity(suffix, INCH * quantity.factor, named, quantity.least / INCH)
     return replace(entry, key=key, param=replace(param, quantity=unit, **ends))
 
@@ -71,9 +71,9 @@ def _found(fault: Fault, document: Mapping[str, Any]) -> tuple[tuple[str | int, 
     place: Any = document
     path: list[str | int] = []
     for step in fault.path:
-        names = [step, spelt_in(step), key_in(step)] if isinstance(step, str) else [step]
         has = place if isinstance(place, Mapping) else ()
-        path.append(next((one for one in names if one in has), names[-1]))
+        own = key_in(step) if isinstance(step, str) else step
+        path.append(step if step in has else own)
         try:
             place = place[path[-1]]
         except (LookupError, TypeError):

@@ -84,9 +84,9 @@ def measure_hint(
         size, hole = f"M{formatted(nominal)}", _CLEARANCE.get(nominal)
         means = {hole: f"the hole for {size} (ISO 273, medium)"} if hole else {}
         means |= {nominal: "its nominal diameter"}
-        return _screw_hint(size, _sizes_in(unit, means), fits, key)
+        return _screw_hint(size, means, unit, fits, key)
     if of_length and (screw := _INCH_SCREW.fullmatch(text)) and screw["under"] != "0":
-        return _screw_hint(text, _sizes_in(unit, _of_inch_screw(screw)), fits, key)
+        return _screw_hint(text, _of_inch_screw(screw), unit, fits, key)
     found = _MEASURE.fullmatch(text)
     if found is None or found["under"] == "0":
         return ""
@@ -153,22 +153,19 @@ def _alone(given: str, unit: str) -> str:
     return f"{given} is no unit that is known: " * bool(word) + f"write the number alone, in {unit}"
 
 
-def _screw_hint(size: str, means: dict[float, str], fits: Callable[[float], bool], key: str) -> str:
+def _screw_hint(
+    size: str, means: dict[float, str], unit: str, fits: Callable[[float], bool], key: str
+) -> str:
     """Return the diameters, mm, that a screw's size may stand for; for a radius half of them."""
     share, half = (0.5, "half of ") if "radius" in key else (1.0, "")
+    if unit == "in":
+        means = {value / 25.4: what.replace("in mm ", "") for value, what in means.items()}
     named = [
         f"{formatted(share * value, 10)}, {half}{what}"
         for value, what in means.items()
         if fits(share * value)
     ]
     return f"{size}: write {', or '.join(named)}" if named else ""
-
-
-def _sizes_in(unit: str, means: dict[float, str]) -> dict[float, str]:
-    """Return sizes in mm, with what they are, in the unit of a key."""
-    if unit == "mm":
-        return means
-    return {size / 25.4: words.replace("in mm ", "") for size, words in means.items()}
 
 
 def _of_inch_screw(screw: re.Match[str]) -> dict[float, str]:

@@ -10,7 +10,7 @@ from collections import ChainMap
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any, Final
 
-from gearcam.base.inches import UNITS, key_in, spellings_in, spelt_in, text_in, value_in
+from gearcam.base.inches import UNITS, key_in, spellings_in, text_in, value_in
 from gearcam.base.quantities import NONE, REQUIRED
 from gearcam.base.rules import Field, Fields, Rule
 from gearcam.designs.faults import description
@@ -27,9 +27,6 @@ _TYPES: Final = {float: "number", int: "integer", str: "string", bool: "boolean"
 _BOUNDS: Final = {
     "gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", "le": "maximum"
 }  # fmt: skip
-
-_LENGTH: Final = "length_mm"
-"""A key of a length, whose values are in inches in a file in inches."""
 
 _TURNED: Final = {"minimum": "maximum", "maximum": "minimum"}
 
@@ -93,9 +90,7 @@ def _word_in(word: str, value: Any, key: str) -> tuple[str, Any]:
     if word == "required":
         return word, [one for one in value if not spellings_in(one)[1:]]
     if word == "properties":
-        own = {spelt_in(name): _in_inches(one, _LENGTH) for name, one in value.items()}
-        own |= {key_in(name): _in_inches(one, name) for name, one in value.items()}
-        return word, own | {name: one for name, one in value.items() if name not in own}
+        return word, value | {key_in(name): _in_inches(one, name) for name, one in value.items()}
     if word == "propertyNames":
         return word, {"enum": [name for one in value["enum"] for name in spellings_in(one)]}
     if word == "description":

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import re
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from gearcam.base.errors import Problem
-from gearcam.base.inches import INCH, NUMBER, UNITS, key_in, text_in
-from gearcam.base.numerals import formatted
+from gearcam.base.inches import INCH, UNITS, each, key_in, text_in
 from gearcam.base.quantities import REQUIRED
 from gearcam.designs.examine import name_fault
 from gearcam.designs.faults import description, short, show
@@ -30,13 +28,6 @@ _OF_PITCH: Final = (
     "diametral pitch, pi*z/L with the length L of a pitch curve; a number from 0.0254 to 25400 1/in"
 )
 
-_ENTRY: Final = re.compile(
-    r"^(?P<mark>(?:# )?)(?P<head>\w+(?= = )|\[+[\w.]+\]+)(?: = (?P<value>.*?))?"
-    r"(?P<words>(?: +# .*)?(?:\n#? {20,}#   .*)*)$",
-    re.MULTILINE,
-)
-"""A key with its value, or the title of a table, and what is said beside it."""
-
 _HEADER: Final = """\
 # {doc}. Build it with: gearcam build FILE
 # Lengths are in mm, angles in degrees.
@@ -46,6 +37,41 @@ _HEADER: Final = """\
 
 _MARKS: Final = ("rotation_arrow", "zero_mark")
 """What a part is marked with when it is known how it is made."""
+
+
+class KeyLine(NamedTuple):
+    """A key with its value, or the head of a table, and what is said beside it.
+
+    Parameters
+    ----------
+    key : str
+        The key, or the head.
+    value : object
+        The value; None of a head.
+    words : str
+        The comment; empty for none.
+    mark : str
+        ``# `` if all of it is a comment.
+    """
+
+    key: str
+    value: Any
+    words: str
+    mark: str = ""
+
+    def __str__(self) -> str:
+        column = _COLUMN - len(self.mark)
+        value = "" if self.value is None else f" = {show(short(self.value))}"
+        text = f"{self.mark}{self.key}{value}"
+        if not self.words:
+            return text
+        first, *more = textwrap.wrap(self.words, _WIDTH - _COLUMN)
+        # behind a leading "# " the continuation needs its own
+        rest = [f"{self.mark}{'':<{column - 1}} #   {line}" for line in more]
+        return "\n".join([f"{text:<{_COLUMN - 1}} # {first}", *rest])
+
+
+Lines = Iterator[KeyLine | str]
 
 
 def template(kind: str, name: str = "", process: str = "", units: str = UNITS[0]) -> str:
@@ -68,32 +94,27 @@ def template(kind: str, name: str = "", process: str = "", units: str = UNITS[0]
         TOML.
     """
     name = "my_" + kind.replace("-", "_") if name_fault(name) else name
-    text = "\n".join(_lines(KINDS[kind], name, process)) + "\n"
-    return text_in(_ENTRY.sub(_entry_in, text)) if units == "inch" else text
+    lines = _lines(KINDS[kind], name, process, units)
+    return "\n".join(str(one if units == "mm" else _in_inches(one)) for one in lines) + "\n"
 
 
-def _entry_in(found: re.Match[str]) -> str:
-    """Return a line and those that go on with its comment in inches.
+def _in_inches(line: KeyLine | str) -> KeyLine | str:
+    """Return a line in inches.
 
     A length that is given, or is an example, becomes a round one that is 1.6 % longer, so that all
     of them fit together as before; the pitch is a whole number. A default keeps its value.
     """
-    head, value = found["head"], found["value"] or ""
-    words = " ".join(re.sub(r"^[# ]+", "", line) for line in found["words"].splitlines())
-    key = key_in(head)
-    if value and key != head:
-        rough = not found["mark"] or words.startswith("(example)")
-        if key == "diametral_pitch":
-            words = "(example) " * words.startswith("(") + _OF_PITCH
-            value = formatted(round(_ROUND / float(value)))
-        else:
-            size = 1.0 / _ROUND if rough else 1.0 / INCH
-            value = re.sub(NUMBER, lambda one: formatted(size * float(one[0])), value)
-    text = f"{key} = {value}" if value else key
-    own = f"\n{key_line('units', 'inch', 'of lengths: keys end in _in')}" if head == "kind" else ""
-    if not words:
-        return f"{found['mark']}{text}{own}"
-    return found["mark"] + beside(text, text_in(words), _COLUMN - len(found["mark"])) + own
+    if isinstance(line, str):
+        return text_in(line)
+    key, value, words = key_in(line.key), line.value, line.words
+    if key == "diametral_pitch":
+        words, value = "(example) " * words.startswith("(") + _OF_PITCH, round(_ROUND / value)
+    elif key != line.key:
+        rough = not line.mark or words.startswith("(example)")
+        value = each(value, lambda one: one / (_ROUND if rough else INCH))
+    elif isinstance(value, str):
+        value = text_in(value)  # it may name a fact
+    return line._replace(key=key, value=value, words=text_in(words))
 
 
 def template_hint(word: str) -> str:
@@ -128,11 +149,13 @@ def process_problem(kind: str, process: str) -> Problem | None:
     return Problem(message, key="--for", allowed=", ".join(own) or "leave it out", hint=hint)
 
 
-def _lines(kind: DesignKind, name: str, process: str) -> Iterator[str]:
+def _lines(kind: DesignKind, name: str, process: str, units: str) -> Lines:
     more = _preset(kind, process) if process else {}
     yield _HEADER.format(doc=f"{kind.doc[0].upper()}{kind.doc[1:]}")
     yield f'kind = "{kind.name}"'
-    yield key_line("name", name, "name of the output folder")
+    if units != "mm":
+        yield KeyLine("units", units, "of lengths: keys end in _in")
+    yield KeyLine("name", name, "name of the output folder")
     for title in (*kind.tree, "limits"):
         note, given = kind.notes.get(title, ""), kind.example.get(title, {})
         if title in kind.nodes:
@@ -155,7 +178,7 @@ def _preset(kind: DesignKind, process: str) -> Mapping[str, Mapping[str, Any]]:
     }
 
 
-def _node(node: Node, title: str, example: Any, note: str) -> Iterator[str]:
+def _node(node: Node, title: str, example: Any, note: str) -> Lines:
     """Yield the lines of a node: those of an `example`, then others as comments."""
     if isinstance(node, Either):
         first, *rest = (case.node() for case in node.cases)
@@ -173,22 +196,22 @@ def _node(node: Node, title: str, example: Any, note: str) -> Iterator[str]:
             yield from _chosen(node.item, one)
         yield from _others(node.item, example, f"[[{title}]]")
     else:
-        yield from ("", beside(f"[{title}]", note))
+        yield from ("", KeyLine(f"[{title}]", None, note))
         yield from _chosen(node, example)
         yield from _others(node, [example], "")
 
 
-def _chosen(node: Keys | Choice, given: Mapping[str, Any], mark: str = "") -> Iterator[str]:
+def _chosen(node: Keys | Choice, given: Mapping[str, Any], mark: str = "") -> Lines:
     """Yield the lines of a table, as comments if `mark` is ``# ``; words without a value end it."""
     known = joined([*levels_of(node, given)], "")
     while isinstance(node, Choice) and node.tag in given:
         word = given[node.tag]
-        yield key_line(node.tag, word, node.about(word), mark)
+        yield KeyLine(node.tag, word, node.about(word), mark)
         node = node.node(word)
     yield from entry_lines(known, given)
 
 
-def _others(node: Keys | Choice, examples: Sequence[Mapping[str, Any]], head: str) -> Iterator[str]:
+def _others(node: Keys | Choice, examples: Sequence[Mapping[str, Any]], head: str) -> Lines:
     """Yield comments on what else could be chosen; a table that may stand again has a `head`."""
     if not isinstance(node, Choice):
         return
@@ -217,10 +240,10 @@ def _shown(table: Table, examples: Mapping[str, Any]) -> Table:
     return Table(table.title, table.owner, entries)
 
 
-def _table(head: str, table: Table, given: Mapping[str, Any], note: str) -> Iterator[str]:
+def _table(head: str, table: Table, given: Mapping[str, Any], note: str) -> Lines:
     if table.entries:
         yield ""
-        yield (beside(head, note) if note else head) if given else f"# {head}"
+        yield KeyLine(head, None, note) if given else f"# {head}"
         designs = {key: one for key, one in given.items() if isinstance(one, Mapping)}
         rest = {key: entry for key, entry in table.entries.items() if key not in designs}
         yield from entry_lines(Table(table.title, table.owner, rest), given)
@@ -228,20 +251,20 @@ def _table(head: str, table: Table, given: Mapping[str, Any], note: str) -> Iter
             yield from _nested(f"{head.strip('[]')}.{key}", design, description(table.entries[key]))
 
 
-def _nested(path: str, design: Mapping[str, Any], words: str = "") -> Iterator[str]:
+def _nested(path: str, design: Mapping[str, Any], words: str = "") -> Lines:
     """Yield the lines of a nested design, without comments on its keys."""
     plain = {key: one for key, one in design.items() if not _is_table(one)}
     if plain or words:
         yield ""
-        yield beside(f"[{path}]", words) if words else f"[{path}]"
-        yield from (f"{key} = {show(one)}" for key, one in plain.items())
+        yield KeyLine(f"[{path}]", None, words)
+        yield from (KeyLine(key, one, "") for key, one in plain.items())
     for key, one in design.items():
         if isinstance(one, Mapping):
             yield from _nested(f"{path}.{key}", one)
         elif _is_table(one):
             for item in one:
                 yield from ("", f"[[{path}.{key}]]")
-                yield from (f"{name} = {show(value)}" for name, value in item.items())
+                yield from (KeyLine(name, value, "") for name, value in item.items())
 
 
 def _is_table(value: Any) -> bool:
@@ -249,47 +272,33 @@ def _is_table(value: Any) -> bool:
     return bool(tables) and all(isinstance(one, Mapping) for one in tables)
 
 
-def entry_lines(table: Table, given: Mapping[str, Any]) -> Iterator[str]:
+def entry_lines(table: Table, given: Mapping[str, Any]) -> Lines:
     """Yield a line for each key of a `table`: those `given`, and the others as comments."""
     for key, entry in table.entries.items():
         if key in given:
-            yield key_line(key, given[key], description(entry))
+            yield KeyLine(key, given[key], description(entry))
         else:
             yield comment_line(entry)
 
 
-def comment_line(entry: Key) -> str:
+def comment_line(entry: Key) -> KeyLine:
     """Return the line of an optional key: with its default, or with an example."""
     if entry.default in (None, REQUIRED):
         words = f"(example) {description(entry)}"
-        return key_line(entry.key, entry.param.example, words, "# ")
+        return KeyLine(entry.key, entry.param.example, words, "# ")
     value = entry.outward(entry.default)
     if entry.param.both and len(set(value)) == 1:
         value = value[0]
-    return key_line(entry.key, value, description(entry), "# ")
+    return KeyLine(entry.key, value, description(entry), "# ")
 
 
-def law_comment(key: str, name: str, entry: Any, table: Table) -> Iterator[str]:
+def law_comment(key: str, name: str, entry: Any, table: Table) -> Lines:
     """Yield comments on a law, with the values of an example: `key`, `name`, `entry`, `table`."""
     given = table.document(entry.example)
     yield "#"
-    yield key_line(key, name, entry.doc, "# ")
+    yield KeyLine(key, name, entry.doc, "# ")
     for key, item in table.entries.items():
         if key in given:
-            yield key_line(key, given[key], description(item), "# ")
+            yield KeyLine(key, given[key], description(item), "# ")
         else:
             yield f"#   or {key}: {item.param.doc}"
-
-
-def key_line(key: str, value: Any, words: str, mark: str = "") -> str:
-    """Return ``key = value`` with `words` beside it, as a comment if its `mark` is ``# ``."""
-    return mark + beside(f"{key} = {show(short(value))}", words, _COLUMN - len(mark))
-
-
-def beside(text: str, words: str, column: int = _COLUMN) -> str:
-    """Return a line of `text` with `words` beside it from a `column` on, continued below it."""
-    first, *more = textwrap.wrap(words, _WIDTH - _COLUMN) or [""]
-    # behind a leading "# " the continuation needs its own
-    start = "" if column == _COLUMN else "# "
-    rest = [f"{start}{'':<{column - 1}} #   {line}" for line in more]
-    return "\n".join([f"{text:<{column - 1}} # {first}", *rest])

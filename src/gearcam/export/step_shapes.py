@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from importlib import import_module
 from typing import Any, Final
@@ -31,7 +31,7 @@ from gearcam.numeric.bulges import arc_centers, bulge_pieces
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.polygons import nearest
 from gearcam.numeric.splines import DEGREE, Spline, fit_splines
-from gearcam.parts.body import Bevel, Edge, Layer, Part, ScrewHole
+from gearcam.parts.body import Bevel, Edge, Layer, Opening, Part, ScrewHole
 from gearcam.parts.shapes import Circle, Loop
 from gearcam.parts.solids import OVERSHOOT, SolidError, demand_volume
 
@@ -185,21 +185,15 @@ def _step(part: Part, number: int, tolerance: float) -> Any:
     # swept surfaces are cut five times as fast as B-splines
     prism = _swept if part.recesses else _prism
     body = prism(replace(step, openings=through), tolerance)
-    if bosses:
-        hubs = [prism(replace(boss, openings=()), tolerance) for boss in bosses]
-        body = _combined(occt.BRepAlgoAPI_Fuse(), body, hubs)
-    low = min(layer.low for layer in part.layers) - CLEARANCE
-    high = max(layer.high for layer in part.layers) + CLEARANCE
-    cutters = [Layer(edge=opening.shape, low=low, high=high) for opening in late]
-    if topmost:
-        cutters += part.cutters(OVERSHOOT)
+    hubs = [prism(replace(boss, openings=()), tolerance) for boss in bosses]
+    cutters = [*_through(part, late), *(part.cutters(OVERSHOOT) if topmost else ())]
     tools = [prism(cutter, tolerance) for cutter in cutters]
     if part.screw is not None and (topmost if part.screw.middle > 0.0 else lowest):
         tools.append(_drilled(part.screw))
-    made = _combined(occt.BRepAlgoAPI_Cut(), body, tools) if tools else body
+    made = _worked(body, hubs, tools)
     made = _converted(made) if part.recesses else made
     ends = [one for one in part.smooth_bevels if (topmost if one.up else lowest)]
-    return _chamfered(made, ends, tolerance) if ends else made
+    return _chamfered(made, ends, tolerance)
 
 
 def with_fittings(body: Any, core: Part, tolerance: float) -> Any:
@@ -219,15 +213,22 @@ def with_fittings(body: Any, core: Part, tolerance: float) -> Any:
     TopoDS_Solid
     """
     hubs = [_prism(replace(boss, openings=()), tolerance) for boss in core.bosses]
-    if hubs:
-        body = _combined(occt.BRepAlgoAPI_Fuse(), body, hubs)
-    low, high = core.ends[0] - CLEARANCE, core.ends[1] + CLEARANCE
-    cutters = [Layer(edge=one.shape, low=low, high=high) for one in core.openings]
-    tools = [_prism(one, tolerance) for one in (*cutters, *core.cutters(OVERSHOOT))]
+    cutters = (*_through(core, core.openings), *core.cutters(OVERSHOOT))
+    tools = [_prism(one, tolerance) for one in cutters]
     tools += [] if core.screw is None else [_drilled(core.screw)]
-    if tools:
-        body = _combined(occt.BRepAlgoAPI_Cut(), body, tools)
-    return _chamfered(body, core.bevels, core.tolerance) if core.bevels else body
+    return _chamfered(_worked(body, hubs, tools), core.bevels, core.tolerance)
+
+
+def _through(part: Part, openings: Iterable[Opening]) -> list[Layer]:
+    """Return openings as layers that go beyond both ends of a part."""
+    low, high = part.ends[0] - CLEARANCE, part.ends[1] + CLEARANCE
+    return [Layer(edge=one.shape, low=low, high=high) for one in openings]
+
+
+def _worked(body: Any, hubs: Sequence[Any], tools: Sequence[Any]) -> Any:
+    """Return a solid with its hubs, less tools."""
+    body = _combined(occt.BRepAlgoAPI_Fuse(), body, hubs) if hubs else body
+    return _combined(occt.BRepAlgoAPI_Cut(), body, tools) if tools else body
 
 
 def _drilled(screw: ScrewHole) -> Any:
@@ -240,6 +241,8 @@ def _drilled(screw: ScrewHole) -> Any:
 
 def _chamfered(body: Any, bevels: Sequence[Bevel], tolerance: float) -> Any:
     """Return a solid whose edges in faces have chamfers."""
+    if not bevels:
+        return body
     maker = occt.BRepFilletAPI_MakeChamfer(body)
     rings = [(one, one.edge.polyline(tolerance)) for one in bevels]
     for edge in subshapes(body, "EDGE"):

@@ -91,32 +91,34 @@ class Measuring(ShortRepr):
             Of the pins; by default the recommended one.
         """
         diameter, pins = self.pins(diameter)
-        count, slides = len(self.numbers), self.outline.toothing.track.slides
+        count, there = len(self.numbers), np.arange(len(pins.over))
 
         def filled(values: Array, rows: Ints) -> Array:
             column = np.full(count, np.nan)
             column[rows] = values
             return column
 
-        radii = np.abs(np.vstack([pins.center, pins.contact])) * (np.nan if slides else 1.0)
-        alone = np.isnan(pins.over) | (pins.opposite == np.arange(len(pins.over)))
+        turns = np.nan if self.outline.toothing.track.slides else 1.0
+        alone = np.isnan(pins.over) | (pins.opposite == there)
         of_spaces = {
             "pin_least_mm": self.over.thinnest.diameter,
             "pin_most_mm": self.over.thickest.diameter,
             "x_mm": pins.center.real,
             "y_mm": pins.center.imag,
-            "center_radius_mm": radii[0],
-            "center_deg": np.where(
-                np.isnan(radii[0]), np.nan, np.degrees(np.angle(pins.center)) % 360.0
-            ),
-            "contact_radius_before_mm": radii[1],
-            "contact_radius_after_mm": radii[2],
+            "center_radius_mm": turns * np.abs(pins.center),
+            "center_deg": turns * (np.degrees(np.angle(pins.center)) % 360.0),
+            "contact_radius_before_mm": turns * np.abs(pins.contact[0]),
+            "contact_radius_after_mm": turns * np.abs(pins.contact[1]),
             "root_gap_mm": pins.root_gap,
             "stands_out_mm": pins.stands_out,
             "opposite": np.where(alone, np.nan, self.numbers[pins.opposite]),
             "over_pins_mm": pins.over,
         }
-        spans, (best, there) = self.spans, self._best
+        # of each tooth the span from it that is touched nearest to the middle of the flanks
+        spans = self.spans
+        order = np.lexsort((spans.off, spans.first))
+        best = order[np.diff(spans.first[order], prepend=-1) > 0]
+        from_there = np.searchsorted(self.numbers, spans.first[best])
         of_spans = {
             "span_teeth": spans.teeth,
             "span_mm": spans.reading,
@@ -128,25 +130,11 @@ class Measuring(ShortRepr):
             {
                 "tooth": self.numbers,
                 "pin_diameter_mm": np.full(count, diameter),
-                **{
-                    name: filled(values, np.arange(len(values)))
-                    for name, values in of_spaces.items()
-                },
+                **{name: filled(values, there) for name, values in of_spaces.items()},
                 **{f"{name}_mm": values for name, values in self.over.chords.items()},
-                **{name: filled(values[best], there) for name, values in of_spans.items()},
+                **{name: filled(values[best], from_there) for name, values in of_spans.items()},
             }
         )
-
-    @cached_property
-    def _best(self) -> tuple[Ints, Ints]:
-        """Of each tooth the span from it that is touched nearest to the middle of the flanks.
-
-        Indices of `spans`, and of the teeth among `numbers`.
-        """
-        spans = self.spans
-        order = np.lexsort((spans.off, spans.first))
-        best = order[np.diff(spans.first[order], prepend=-1) > 0]
-        return best, np.searchsorted(self.numbers, spans.first[best])
 
     def span(self, first: int, teeth: int) -> float:
         """Return the steady reading of flat jaws over some teeth, mm.
@@ -167,10 +155,8 @@ class Measuring(ShortRepr):
         at = np.flatnonzero((spans.first == first) & (spans.teeth == teeth))
         if len(at):
             return float(spans.reading[at[0]])
-        what = (
-            f"no reading over {teeth} teeth from tooth {first} on is steady: both flanks have no "
-        )
-        what += "common normal"
+        what = f"no reading over {teeth} teeth from tooth {first} on is steady: both flanks have "
+        what += "no common normal"
         note = "no flanks of this wheel have one: measure over pins"
         if len(spans.first):
             z, closed = len(self.numbers), self.outline.toothing.closed

@@ -188,11 +188,8 @@ def _back(toothed: Plane, inner: Plane, depth: float, height: float | None) -> f
     tips = float(toothed.real.min())
     least = max(float(toothed.real.max()), float(inner.real.max())) - tips
     if height <= least:
-        what, key = (
-            "the bar of the rack leaves its end faces, a module deep, no metal",
-            "bar.height_mm",
-        )
-        raise beyond_limit(what, key, height, least, near=_MORE * least, unit="mm")
+        what = "the bar of the rack leaves its end faces, a module deep, no metal"
+        raise beyond_limit(what, "bar.height_mm", height, least, near=_MORE * least, unit="mm")
     return tips + height
 
 

@@ -390,7 +390,7 @@ def make_pair(
             teeth=spec.teeth[wheel - 1],
             cutter=cutter,
             rounding=finish[wheel - 1].tip_rounding,
-            in_gap=track.slides and bar is not None and bar.in_gap,
+            in_gap=track.slides and bar is not None and bar.ends == "gap",
         )
 
     second = toothing(2, rack)

@@ -118,8 +118,7 @@ class Pins(NamedTuple):
         return (self.root_gap > 0.0) & (self.stands_out > 0.0)
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class PinLimits(ShortRepr):
+class PinLimits(NamedTuple):
     """The thinnest or the thickest pin of each space.
 
     Parameters
@@ -159,12 +158,12 @@ class PinMeasures(ShortRepr):
     @cached_property
     def thinnest(self) -> PinLimits:
         """The thinnest pins that touch both flanks."""
-        return self._inside(0.0)[0]
+        return self._limit(self.spaces.lowest, self.spaces.highest, 1.0)
 
     @cached_property
     def thickest(self) -> PinLimits:
         """The thickest pins that touch both flanks."""
-        return self._inside(0.0)[1]
+        return self._limit(self.spaces.highest, self.spaces.lowest, -1.0)
 
     def _inside(self, share: float) -> tuple[PinLimits, PinLimits]:
         """Return the thinnest and the thickest pins that do not touch a `share` of both ends."""
@@ -187,7 +186,7 @@ class PinMeasures(ShortRepr):
         found = reach(bracketed_root(skew, 0.0 * first, 0.0 * first + 1.0, _SHARE, (first, last)))
         there = (first * last <= 0.0) & (self.spaces.highest > self.spaces.lowest).all(axis=0)
         diameter = np.where(there, 2.0 * self._touching(found)[1], np.nan)
-        return PinLimits(diameter=diameter, reach=found)
+        return PinLimits(diameter, found)
 
     def _touching(self, reach: Array) -> tuple[Array, Array]:
         """Return how much farther out the second contacts lie than those of pins, and their radii.
@@ -222,10 +221,13 @@ class PinMeasures(ShortRepr):
 
     def _place(self, diameter: float, at: Ints, places: Plane) -> None:
         """Enter centres and both contacts of pins in the spaces `at` into rows of `places`."""
-        toothing, thin, thick = self.toothing, self.thinnest, self.thickest
+        toothing = self.toothing
         sf, sigma = self.spaces.sf[:, at], np.repeat(SIDES, len(at), axis=1)
         moved = sf + sigma * 0.5 * diameter / math.cos(toothing.cutter.alpha)
-        ends = (toothing.track.angle(sf - sigma * one.reach[:, at]) for one in (thin, thick))
+        ends = (
+            toothing.track.angle(sf - sigma * one.reach[:, at])
+            for one in (self.thinnest, self.thickest)
+        )
         phi, met = flank_crossings(toothing, moved, sigma, *ends)
         frames = toothing.frames(phi)
         places[0, at[met]] = toothing.flank_points(frames, moved, sigma)[0, met]
@@ -314,9 +316,8 @@ class PinMeasures(ShortRepr):
             return 0.5 * self.toothing.pitch
         for share in _SHARES:
             low, high = (one.diameter[there] for one in self._inside(share))
-            if not np.isfinite(low + high).all():
-                continue
-            for diameter in _sizes(float(low.max()), float(high.min())):
+            possible = np.isfinite(low + high).all()
+            for diameter in _sizes(float(low.max()), float(high.min())) if possible else ():
                 pins = self.pins(diameter)
                 if (pins.measured & (pins.stands_out > _OUT * module))[there].all():
                     return diameter
@@ -339,22 +340,17 @@ class PinMeasures(ShortRepr):
         frames = toothing.frames(toothing.track.angle(places), curved=False)
         before, middle, after = frames.p
         cosine, sine = math.cos(toothing.cutter.alpha), math.sin(toothing.cutter.alpha)
-        out = toothing.turn * frames.t[1]
+        chord, out = np.abs(after - before), toothing.turn * frames.t[1]
+        constant, height = 2.0 * half * cosine**2 + 0.0 * chord, half * cosine * sine
+        across = toothing.turn * (after - before) / chord
         table = {}
-        for name, reach, chord, away, point in (
-            ("chord", 0.0, after - before, toothing.turn * (after - before), before),
-            (
-                "constant_chord",
-                half,
-                2.0 * half * cosine**2 + 0.0 * middle,
-                out,
-                middle + half * cosine * sine * out,
-            ),
+        for name, reach, size, away, point in (
+            ("chord", 0.0, chord, across, before),
+            ("constant_chord", half, constant, out, middle + height * out),
         ):
-            unit = away / np.abs(away)
             there = ((low <= reach) & (reach <= high)).all(axis=0)
-            depth = self._top(teeth, unit) - (np.conj(unit) * point).real
-            table[name] = np.where(there, np.abs(chord), np.nan)
+            depth = self._top(teeth, away) - (np.conj(away) * point).real
+            table[name] = np.where(there, size, np.nan)
             table[f"{name}_depth"] = np.where(there, depth, np.nan)
         return table
 

@@ -250,19 +250,22 @@ class RingSpec:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Bar:
-    """What a rack is made from.
+class Bar(ShortRepr):
+    """The metal behind the teeth of a rack: its height and its ends."""
 
-    Parameters
-    ----------
-    height : float or None, mm
-        From its back to the highest tip; None: a module below the roots.
-    in_gap : bool
-        Whether it ends in the middle of a gap, after whole teeth, instead of half a pitch beyond.
-    """
-
-    height: float | None = None
-    in_gap: bool = False
+    height: float | None = positive_length(
+        example=20,
+        doc="height of a rack from its back to the highest tip; if left out the back "
+        "is a module below the roots",
+    )
+    ends: str = param(
+        TEXT,
+        default="tooth",
+        choices=("tooth", "gap"),
+        doc="where a rack ends: in the middle of a tooth, half a pitch beyond its travel, or in "
+        "the middle of a gap, after whole teeth; its end face then meets the line of centres at "
+        "phi1 = 0, as a timing mark would",
+    )
 
 
 @dataclass(frozen=True, kw_only=True)

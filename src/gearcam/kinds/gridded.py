@@ -52,8 +52,8 @@ ROUND: Final = 4
 """Chords of the blank for each position of a roller that cuts a solid: the error of its volume is
 that of the walls then."""
 
-_FINE: Final = 1e-3
-"""Chord tolerance of hub, openings and marks, mm."""
+FINE: Final = 1e-3
+"""Chord tolerance of hub, openings, marks and drawings, mm."""
 
 _COARSE: Final = math.radians(4.0)
 """Least steps of the driver in a draft: the solid's volume is good to a thousandth."""
@@ -224,7 +224,7 @@ class GriddedCam(LoadedCam, Result):
         with self.stage("blank"):
             made = make_part(
                 STEM,
-                [edge.contour(_FINE)],
+                [edge.contour(FINE)],
                 length,
                 replace(blank, chamfer=0.0),
                 work,
@@ -232,8 +232,7 @@ class GriddedCam(LoadedCam, Result):
                 way=-1.0 if self.cam.clockwise else 1.0,
             )
             outside = [Circle(center=0j, diameter=2.0 * one) for one in self.rims]
-            made_bevels = bevels(made, blank.chamfer, work, outside)
-            return replace(made, bevels=tuple(made_bevels))
+            return replace(made, bevels=tuple(bevels(made, blank.chamfer, work, outside)))
 
     @cached_property
     def sheets(self) -> tuple[Sheet, ...]:
@@ -347,7 +346,7 @@ class GriddedCam(LoadedCam, Result):
         from gearcam.parts.checks import CheckedParts
 
         subject = CheckedParts(parts=(self.core,), names=(STEM,), edge="floor of the groove")
-        return CHECKS[PARTS, "thin-wall"].run(subject, limit)
+        return tuple(CHECKS[PARTS, "thin-wall"].run(subject, limit))
 
     @cached_property
     def checked(self) -> tuple[Finding, ...]:

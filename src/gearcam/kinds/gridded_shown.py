@@ -11,11 +11,8 @@ import numpy as np
 
 from gearcam.base.facts import Fact, Tree
 from gearcam.designs.outputs import DRAWINGS, MESHES
-from gearcam.kinds.gridded import ORDERS
+from gearcam.kinds.gridded import FINE, ORDERS
 from gearcam.kinds.shared import peak_of
-
-_FINE: Final = 1e-3
-"""Tolerance of outlines in DXF, mm."""
 
 if TYPE_CHECKING:
     from gearcam.kinds.gridded import GriddedCam
@@ -168,7 +165,7 @@ def _sheets(kind: str, result: GriddedCam, _: Any) -> Files:
     from gearcam.export.dxf import DxfStyle
     from gearcam.results.parts import sheet_files
 
-    return sheet_files(kind, result.sheets, result.design.name, DxfStyle(tolerance=_FINE))
+    return sheet_files(kind, result.sheets, result.design.name, DxfStyle(tolerance=FINE))
 
 
 def _sheet_files(kind: str) -> FileMaker:

@@ -21,7 +21,7 @@ Source: C. de Boor, A Practical Guide to Splines, chapter XIV (the smoothing spl
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice
 from typing import Final
@@ -170,11 +170,8 @@ class MotionTable(FromFile):
 
         def check(theta: Array, lift: Array) -> Iterator[Breach]:
             yield from _angle_problems(theta)
-            yield from (
-                self._radius_problems(theta, lift)
-                if self.of_radii
-                else self._lift_problems(theta, lift, oscillating)
-            )
+            yield from self._radius_problems(theta, lift) if self.of_radii else ()
+            yield from self._value_problems(theta, lift, oscillating)
 
         needed = " and ".join(self._columns(oscillating))
         if not self.of_radii:
@@ -215,38 +212,34 @@ class MotionTable(FromFile):
         for row in np.flatnonzero(steps > _APART + TYPED).tolist():
             state = f"the radius before is {degrees(float(steps[row]))} away"
             yield "lift", row + 1, state, f"radii at most {degrees(_APART)} apart"
-        if self.smoothing_tolerance is not None:
-            rule = "radius_tolerance_mm"
-            yield "smoothing_tolerance", None, "is of lifts, but the rows are radii", rule
-        extent, tolerance = float(np.ptp(radius)), self.radius_tolerance or 0.0
-        if extent <= TYPED * float(radius.max()):
-            yield "lift", None, "the follower never moves", "at least two different radii"
-        if tolerance >= 0.5 * extent:
-            rule = f"below {formatted(0.5 * extent, 10)} mm, half of the difference of the radii"
-            yield "radius_tolerance", None, "leaves no lift", rule
-        yield from _open_end(
-            theta, radius, tolerance, "radius", lambda one: f"{formatted(one, 10)} mm"
-        )
 
-    def _lift_problems(self, theta: Array, lift: Array, oscillating: bool) -> Iterator[Breach]:
+    def _value_problems(self, theta: Array, values: Array, oscillating: bool) -> Iterator[Breach]:
+        """Yield the faults of lifts, or of radii."""
         scale, unit = self._unit(oscillating)
+        word, every, whole = "lift", "lifts", "the total lift"
+        name, other = "smoothing_tolerance", "radius_tolerance"
+        if self.of_radii:
+            word, every, whole = "radius", "radii", "the difference of the radii"
+            name, other = other, name
 
         def text(value: float) -> str:
             return f"{formatted(value / scale, 10)} {unit}"
 
-        largest = math.pi if oscillating else LONGEST
-        for row in np.flatnonzero(np.abs(lift) > largest).tolist():
-            yield "lift", row, f"the lift is {text(lift[row])}", f"at most {text(largest)}"
-        extent, tolerance = float(np.ptp(lift)), self.smoothing_tolerance or 0.0
-        if extent <= TYPED * float(np.abs(lift).max()):
-            yield "lift", None, "the follower never moves", "at least two different lifts"
+        largest = math.pi if unit == "deg" else LONGEST
+        for row in np.flatnonzero(np.abs(values) > largest).tolist():
+            yield "lift", row, f"the {word} is {text(values[row])}", f"at most {text(largest)}"
+        extent, tolerance = float(np.ptp(values)), getattr(self, name) or 0.0
+        if extent <= TYPED * float(np.abs(values).max()):
+            yield "lift", None, "the follower never moves", f"at least two different {every}"
         if tolerance >= 0.5 * extent:
-            rule = f"below {text(0.5 * extent)}, half of the total lift"
-            yield "smoothing_tolerance", None, "leaves no lift", rule
-        if self.radius_tolerance is not None:
-            rule = f"smoothing_tolerance_{unit}"
-            yield "radius_tolerance", None, "is of radii, but the rows are lifts", rule
-        yield from _open_end(theta, lift, tolerance, "lift", text)
+            yield name, None, "leaves no lift", f"below {text(0.5 * extent)}, half of {whole}"
+        if getattr(self, other) is not None:
+            others = "lifts" if self.of_radii else "radii"
+            yield other, None, f"is of {others}, but the rows are {every}", f"{name}_{unit}"
+        jump = abs(float(values[-1] - values[0]))
+        if spans(theta, TURN) and jump > max(tolerance, TYPED * extent):
+            state = f"the {word} after the turn is {text(values[-1])}: it jumps by {text(jump)}"
+            yield "lift", len(values) - 1, state, f"that of the first row, {text(values[0])}"
 
     def program(self, tolerances: Tolerances, *, oscillating: bool = False) -> Program:  # noqa: ARG002  (a spline is in closed form)
         """Return the program of the rows.
@@ -334,16 +327,6 @@ def _angle_problems(theta: Array) -> Iterator[Breach]:
     if left > _OPEN * np.diff(theta).max() + TYPED:
         rule = f"rows over the whole turn; the last one, at {end}, may be left out"
         yield "theta", None, state, rule
-
-
-def _open_end(
-    theta: Array, values: Array, tolerance: float, word: str, text: Callable[[float], str]
-) -> Iterator[Breach]:
-    """Yield the fault of values that do not repeat after the turn."""
-    jump = abs(float(values[-1] - values[0]))
-    if spans(theta, TURN) and jump > max(tolerance, TYPED * float(np.ptp(values))):
-        state = f"the {word} after the turn is {text(values[-1])}: it jumps by {text(jump)}"
-        yield "lift", len(values) - 1, state, f"that of the first row, {text(values[0])}"
 
 
 def program_of_rows(theta: Array, lift: Array, apart: Array, tolerance: float) -> Program:

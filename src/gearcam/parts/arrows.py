@@ -9,16 +9,16 @@ Depends on parts' shapes; shapely inside the functions.
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import product
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from gearcam.base.adjustments import Adjustment
-from gearcam.numeric.arrays import as_pairs
+from gearcam.numeric.arrays import Plane, as_pairs
 from gearcam.parts.body import Arrow, Layer, Part
 from gearcam.parts.openings import Workpiece
 from gearcam.parts.shapes import Loop
@@ -102,35 +102,29 @@ def _arcs(free: Polygon, way: complex, line: float, core: float) -> Iterator[Loo
     radii = np.linspace(core, outer, _PLACES + 2)[1:-1]
     radii = radii[np.argsort(np.abs(radii - 0.5 * (core + outer)), kind="stable")]
     turns = 2.0 * math.pi * np.arange(_PLACES) / _PLACES
-    for sweep in _SWEEPS:
-        for radius in radii.tolist():
-            if radius * sweep < 2.0 * _HEAD[1] * line:
-                continue
-            for turn in turns.tolist():  # from the top on
-                yield _arc(radius, 0.5 * math.pi + turn, float(sweep), way.real, line)
+    for sweep, radius in product(_SWEEPS.tolist(), radii.tolist()):
+        for turn in turns.tolist() if radius * sweep >= 2.0 * _HEAD[1] * line else ():
+            yield _arc(radius, 0.5 * math.pi + turn, sweep, way.real, line)  # from the top on
 
 
 def _arc(radius: float, middle: float, sweep: float, hand: float, line: float) -> Loop:
     """Return an arrow along an arc about the origin, counter-clockwise if `hand` is 1."""
-    half, wide = 0.5 * line, 0.5 * _HEAD[0] * line
-    head = _HEAD[1] * line / radius
-    start, end = -0.5 * sweep, 0.5 * sweep - head
-    bend = math.tan(0.25 * (end - start))
-    outside, inside = radius + half, radius - half
-    polar = [
-        (inside, start, 0.0),
-        (outside, start, bend),
-        (outside, end, 0.0),
-        (radius + wide, end, 0.0),
-        (radius, end + head, 0.0),
-        (radius - wide, end, 0.0),
-        (inside, end, -bend),
-    ]
-    points = np.array([cmath.rect(r, hand * angle) for r, angle, _ in polar])
-    bulges = np.array([hand * one for _, _, one in polar])
+    flat = np.roll(_corners(radius * sweep, line), 1)
+    angles = middle + hand * flat.real / radius
+    points = np.asarray((radius - flat.imag) * np.exp(1j * angles), dtype=np.complex128)
+    bend = math.tan(0.25 * (sweep - _HEAD[1] * line / radius))
+    bulges = hand * bend * np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0])
     if hand < 0.0:  # mirrored: the other way round
         points, bulges = points[::-1], -np.roll(bulges[::-1], -1)
-    return Loop(points=points * cmath.exp(1j * middle), bulges=bulges)
+    return Loop(points=points, bulges=bulges)
+
+
+def _corners(length: float, line: float) -> Plane:
+    """Return the corners of an arrow to the right, about its middle, from the tail's lower one."""
+    half, wide = 0.5 * line, 0.5 * _HEAD[0] * line
+    tail, neck, tip = -0.5 * length, 0.5 * length - _HEAD[1] * line, 0.5 * length
+    x = np.array([tail, neck, neck, tip, neck, neck, tail])
+    return x + 1j * np.array([-half, -half, -wide, 0.0, wide, half, half])
 
 
 def _straight(free: Polygon, way: complex, line: float, _: float) -> Iterator[Loop]:
@@ -143,17 +137,10 @@ def _straight(free: Polygon, way: complex, line: float, _: float) -> Iterator[Lo
     along = abs((size * unit.conjugate()).real)
     steps = np.linspace(-0.5, 0.5, _PLACES)
     steps = steps[np.argsort(np.abs(steps), kind="stable")].tolist()
-    half, wide = 0.5 * line, 0.5 * _HEAD[0] * line
     for share in _LENGTHS:
-        length, head = share * along, _HEAD[1] * line
-        if length < 2.0 * head:
+        if share * along < 2.0 * _HEAD[1] * line:
             continue
-        tail, neck, tip = -0.5 * length, 0.5 * length - head, 0.5 * length
-        edge = np.array([
-            complex(tail, -half), complex(neck, -half), complex(neck, -wide), complex(tip, 0.0),
-            complex(neck, wide), complex(neck, half), complex(tail, half),
-        ])  # fmt: skip
-        for x in steps:
-            for y in steps:
-                place = middle + complex(x * size.real, y * size.imag)
-                yield Loop(points=place + unit * edge, bulges=np.zeros(len(edge)))
+        edge = unit * _corners(share * along, line)
+        for x, y in product(steps, steps):
+            place = middle + complex(x * size.real, y * size.imag)
+            yield Loop(points=place + edge, bulges=np.zeros(len(edge)))

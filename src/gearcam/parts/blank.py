@@ -124,9 +124,14 @@ def _widened_fits(values: Values) -> Iterator[Breach]:
             yield "clearance_bores", None, what, rule
 
 
-def _length(*, doc: str, le: float = LONGEST, fit: bool = False) -> Any:
+def _length(*, doc: str, default: float | None = 0.0, **more: Any) -> Any:
     """Return a length; 0 means that there is nothing to measure."""
-    return param(LENGTH, default=0.0, ge=0, le=le, zero_is_none=True, doc=doc, fit=fit)
+    bounds = {"ge": 0, "le": LONGEST, "zero_is_none": True}
+    return param(LENGTH, default=default, doc=doc, **{**bounds, **more})
+
+
+def _flag(*, doc: str, default: bool = False) -> Any:
+    return param(TEXT, default=default, doc=doc)
 
 
 def _word(*words: str, doc: str) -> Any:
@@ -139,18 +144,6 @@ def _angle(*, doc: str) -> Any:
 
 def _count(*, doc: str, le: int) -> Any:
     return param(COUNT, default=0, ge=0, le=le, zero_is_none=True, doc=doc)
-
-
-def least_metal(*, example: float, doc: str) -> Any:
-    """Return a field of the least metal beside lightening holes; None or 0: a usual one.
-
-    Parameters
-    ----------
-    example, doc
-        See `gearcam.base.quantities.param`.
-    """
-    bounds = {"ge": 0, "le": LONGEST, "zero_is_none": True}
-    return param(LENGTH, default=None, example=example, doc=doc, **bounds)
 
 
 ZERO_MARK: Final = "whether a mark in the front face shows where the follower begins its motion"
@@ -174,15 +167,8 @@ class ShaftBlank(ShortRepr, Fitted):
     8.0
     """
 
-    bore_diameter: float | None = param(
-        LENGTH,
-        default=None,
-        ge=0,
-        le=LONGEST,
-        zero_is_none=True,
-        example=20,
-        doc="diameter of the bore; no bore if left out",
-        fit=True,
+    bore_diameter: float | None = _length(
+        default=None, example=20, doc="diameter of the bore; no bore if left out", fit=True
     )
     shaft: str = _word(
         *MOTOR_SHAFTS, doc="motor for whose shaft the bore is; shafts differ: measure yours"
@@ -209,12 +195,14 @@ class ShaftBlank(ShortRepr, Fitted):
     )
     set_screw_angle: float = _angle(doc="direction of the set screw, from the keyway or the flat")
     lightening_holes: int = _count(doc="number of round lightening holes", le=36)
-    rim: float | None = least_metal(
+    rim: float | None = _length(
+        default=None,
         example=6,
         doc="least metal between lightening holes and the edge or groove around them; if left out "
         "2.7 modules, two thirds of the thickness of a cam, or the depth of a groove",
     )
-    web: float | None = least_metal(
+    web: float | None = _length(
+        default=None,
         example=5,
         doc="least metal between lightening holes, and from them to bore, hub and bolt holes; the "
         "rim if left out",
@@ -222,12 +210,8 @@ class ShaftBlank(ShortRepr, Fitted):
     chamfer: float = _length(
         doc="chamfer of the edges of both faces, at 45 deg: of outline, hub and bore", le=100
     )
-    rotation_arrow: bool = param(
-        TEXT,
-        default=False,
-        doc="whether an arrow in the front face shows how the part turns",
-    )
-    zero_mark: bool = param(TEXT, default=False, doc=ZERO_MARK)
+    rotation_arrow: bool = _flag(doc="whether an arrow in the front face shows how the part turns")
+    zero_mark: bool = _flag(doc=ZERO_MARK)
     density: float | None = param(
         DENSITY,
         default=None,
@@ -350,17 +334,13 @@ class WheelBlank(ShaftBlank):
 
     zero_mark: bool = fixed(False)
     stop_pin: float = _length(doc="diameter of the stop pin, which runs in a slot of an open wheel")
-    timing_marks: bool = param(
-        TEXT, default=True, doc="whether timing marks face each other at phi1 = 0"
-    )
+    timing_marks: bool = _flag(default=True, doc="whether timing marks face each other at phi1 = 0")
     mark_diameter: float | None = positive_length(
         example=1, doc="diameter of the timing marks; 0.4 modules if left out"
     )
     clearance: float = allowance(doc="what is taken off the toothed edge, along its normal")
-    clearance_bores: bool = param(
-        TEXT,
-        default=False,
-        doc="whether bores, bolt holes and stop slots are widened by the clearance too",
+    clearance_bores: bool = _flag(
+        doc="whether bores, bolt holes and stop slots are widened by the clearance too"
     )
     tip_rounding: float = _length(doc="radius of the rounded tip edges of the teeth", le=100)
 
@@ -402,32 +382,6 @@ class RowBlank(ShortRepr, Fitted):
         if self.bolts == 1 and self.bolt_spacing is not None:
             message, rule = "a single bolt has no distance to another", "2 bolts or more"
             yield "bolt_spacing", None, message, rule
-
-
-@dataclass(frozen=True, kw_only=True)
-class BarSpec(RowBlank):
-    """What a rack is made from: its height, its ends, a row of mounting holes.
-
-    Examples
-    --------
-    >>> import gearcam as gc
-    >>> gc.BarSpec(height=20.0, ends="gap", bolts=1, bolt_diameter=5.0, bolt_height=6.0)
-    BarSpec(bolts=1, bolt_diameter=5, bolt_height=6, height=20, ends='gap')
-    """
-
-    height: float | None = positive_length(
-        example=20,
-        doc="height of a rack from its back to the highest tip; if left out the back "
-        "is a module below the roots",
-    )
-    ends: str = param(
-        TEXT,
-        default="tooth",
-        choices=("tooth", "gap"),
-        doc="where a rack ends: in the middle of a tooth, half a pitch beyond its travel, or in "
-        "the middle of a gap, after whole teeth; its end face then meets the line of centres at "
-        "phi1 = 0, as a timing mark would",
-    )
 
 
 def _both(name: str, hint: Any, default: Any) -> tuple[str, Any, Any]:

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_left
+from collections.abc import Mapping
 from typing import Any, Final, Self
 
 from gearcam.base.errors import DesignError
@@ -23,6 +24,12 @@ from gearcam.base.quantities import params_of
 
 _SIZES: Final = (3, 6, 10, 18, 30, 50, 80, 120, 180, 250, 315, 400, 500)
 """Ends of the ranges of sizes, mm: over the one before, up to and including this."""
+
+_FINER: Final = (
+    3, 6, 10, 18, 30, 50, 65, 80, 100, 120, 140, 160, 180, 200, 225, 250, 280, 315, 355, 400, 450,
+    500,
+)  # fmt: skip
+"""The same for letters whose deviations change more often."""
 
 _TOLERANCES: Final = {
     4: (3, 4, 4, 5, 6, 7, 8, 10, 12, 14, 16, 18, 20),
@@ -45,22 +52,11 @@ _BELOW: Final = {
 }
 """How far the upper limit of shafts is below the nominal size, um."""
 
-_ABOVE: Final = {
+_ABOVE: Final[Mapping[str, tuple[int, ...]]] = {
     "k": (0, 1, 1, 1, 2, 2, 2, 3, 3, 4, 4, 4, 5),
     "m": (2, 4, 6, 7, 8, 9, 11, 13, 15, 17, 20, 21, 23),
     "n": (4, 8, 10, 12, 15, 17, 20, 23, 27, 31, 34, 37, 40),
     "p": (6, 12, 15, 18, 22, 26, 32, 37, 43, 50, 56, 62, 68),
-}
-"""How far the lower limit of shafts is above the nominal size, um."""
-
-_K_LAST: Final = 7
-"""Last grade with which k is above: coarser ones begin at the nominal size."""
-
-_FINER: Final = (
-    3, 6, 10, 18, 30, 50, 65, 80, 100, 120, 140, 160, 180, 200, 225, 250, 280, 315, 355, 400, 450,
-    500,
-)  # fmt: skip
-_ABOVE_FINER: Final = {
     "r": (
         10, 15, 19, 23, 28, 34, 41, 43, 51, 54, 63, 65, 68, 77, 80, 84, 94, 98, 108, 114, 126, 132,
     ),
@@ -69,7 +65,8 @@ _ABOVE_FINER: Final = {
         232, 252,
     ),
 }  # fmt: skip
-"""The same of the letters whose ranges of sizes are finer."""
+"""How far the lower limit of shafts is above the nominal size, um: k to its grade 7, coarser ones
+begin at it."""
 
 GRADES: Final = {
     "D": (8, 11), "E": (7, 9), "F": (6, 9), "G": (5, 7), "H": (5, 11), "JS": (5, 11), "K": (5, 8),
@@ -244,28 +241,22 @@ def _limits(size: float, letter: str, grade: int) -> tuple[float, float]:
         what = "limits are not known for this size"
         allowed = f"sizes from {formatted(_SMALLEST)} to {formatted(_LARGEST)} mm"
         raise DesignError.of(what, allowed=allowed)
-    tolerance, shaft = _tolerance(size, grade), letter.lower()
+    tolerance, shaft = _at(_TOLERANCES[grade], size), letter.lower()
     if shaft == "js":
         return -0.5 * tolerance, 0.5 * tolerance
     if shaft in _BELOW:
-        away = _BELOW[shaft][bisect_left(_SIZES, size)]
+        away = _at(_BELOW[shaft], size)
         return (-away - tolerance, -away) if shaft == letter else (away, away + tolerance)
     if shaft == letter:
-        away = _away(size, shaft) if shaft != "k" or grade <= _K_LAST else 0
+        away = 0 if shaft == "k" and grade > 7 else _at(_ABOVE[shaft], size)
         return away, away + tolerance
     upper = _upper_of_hole(size, letter, grade)
     return upper - tolerance, upper
 
 
-def _tolerance(size: float, grade: int) -> int:
-    return _TOLERANCES[grade][bisect_left(_SIZES, size)]
-
-
-def _away(size: float, letter: str) -> int:
-    """Return how far the lower limit of a shaft of k to s is above the size, um."""
-    if letter in _ABOVE_FINER:
-        return _ABOVE_FINER[letter][bisect_left(_FINER, size)]
-    return _ABOVE[letter][bisect_left(_SIZES, size)]
+def _at(row: tuple[int, ...], size: float) -> int:
+    """Return the value of a row of a table at a `size`, mm."""
+    return row[bisect_left(_SIZES if len(row) == len(_SIZES) else _FINER, size)]
 
 
 def _upper_of_hole(size: float, letter: str, grade: int) -> int:
@@ -278,7 +269,7 @@ def _upper_of_hole(size: float, letter: str, grade: int) -> int:
         return -9  # as printed
     if letter == "N" and grade > 8 and size > 3:
         return 0
-    upper = -_away(size, letter.lower())
+    upper = -_at(_ABOVE[letter.lower()], size)
     if size > 3 and grade <= (8 if letter in "KMN" else 7):
-        upper += _tolerance(size, grade) - _tolerance(size, grade - 1)
+        upper += _at(_TOLERANCES[grade], size) - _at(_TOLERANCES[grade - 1], size)
     return upper

@@ -229,10 +229,13 @@ def _with_arc(corners: list[complex], angle: float, turn: complex) -> Loop:
 def _bolts(blank: ShaftBlank) -> Iterator[Opening]:
     for number in range(blank.bolts):
         angle = blank.bolt_angle + 2.0 * math.pi * number / blank.bolts
-        center = cmath.rect(0.5 * blank.bolt_circle, angle)
-        shape = Circle(center=center, diameter=blank.bolt_diameter)
-        fits = fits_of(diameter=blank.bolt_diameter)
-        yield Opening(kind="HOLE", shape=shape, name=f"bolt hole {number + 1}", fits=fits)
+        yield _hole(number, cmath.rect(0.5 * blank.bolt_circle, angle), blank.bolt_diameter)
+
+
+def _hole(number: int, center: complex, diameter: float) -> Opening:
+    """Return the hole of a bolt; its `number` counts from 0."""
+    shape, fits = Circle(center=center, diameter=diameter), fits_of(diameter=diameter)
+    return Opening(kind="HOLE", shape=shape, name=f"bolt hole {number + 1}", fits=fits)
 
 
 def fits_of(**sizes: float | None) -> dict[str, FitSize]:
@@ -255,9 +258,7 @@ def row_of_holes(row: RowBlank, foot: complex, along: complex, up: complex) -> I
     for number in range(row.bolts):
         aside = (number - 0.5 * (row.bolts - 1)) * (row.bolt_spacing or 0.0)
         center = foot + aside * along + (row.bolt_height or 0.0) * up
-        shape = Circle(center=center, diameter=row.bolt_diameter)
-        fits = fits_of(diameter=row.bolt_diameter)
-        yield Opening(kind="HOLE", shape=shape, name=f"bolt hole {number + 1}", fits=fits)
+        yield _hole(number, center, row.bolt_diameter)
 
 
 def openings(

@@ -26,7 +26,7 @@ from gearcam.base.numerals import formatted
 from gearcam.numeric.arrays import Array, Ints, Plane, as_pairs
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.mesh import Mesh
-from gearcam.parts.body import Bevel, Body, Layer, Part
+from gearcam.parts.body import Bevel, Body, Layer, Opening, Part
 from gearcam.parts.shapes import Circle, circle_segments
 
 if TYPE_CHECKING:
@@ -110,9 +110,7 @@ def _(part: Part) -> Mesh:
         made = manifold3d.Manifold.batch_boolean(slabs, manifold3d.OpType.Add)
     for cutter in _cutters(manifold3d, part):
         made = made - cutter
-    mesh = _mesh(made)
-    if not mesh.watertight:
-        raise SolidError(f"{part.name}: the solid is empty or open")
+    mesh = _closed(made, f"{part.name}: the solid")
     demand_volume(part, mesh.volume, volume_error(part))
     return mesh
 
@@ -150,16 +148,19 @@ def fitted(body: Mesh, core: Part, height: float) -> Mesh:
             made = made - _wedge(manifold3d, bevel, core.tolerance)
     for boss in core.bosses:
         made = made + _slab(manifold3d, replace(boss, openings=()), core.tolerance, bevels)
-    low, high = (core.ends[0] - OVERSHOOT, core.ends[1] + OVERSHOOT)
-    for opening in core.openings:
-        hole = Layer(edge=opening.shape, low=low, high=high)
-        made = made - _slab(manifold3d, hole, core.tolerance)
-    for cutter in _cutters(manifold3d, core):
+    holes = _holes(manifold3d, core.openings, core.ends, core.tolerance)
+    for cutter in (*holes, *_cutters(manifold3d, core)):
         made = made - cutter
-    mesh = _mesh(made.translate((0.0, 0.0, height)))
-    if not mesh.watertight:
-        raise SolidError(f"{core.name}: the solid is empty or open")
-    return mesh
+    return _closed(made.translate((0.0, 0.0, height)), f"{core.name}: the solid")
+
+
+def _holes(
+    manifold3d: Any, openings: Iterable[Opening], ends: tuple[float, float], tolerance: float
+) -> Iterator[Manifold]:
+    """Yield openings as solids that go beyond both `ends` of a layer, mm."""
+    low, high = ends[0] - OVERSHOOT, ends[1] + OVERSHOOT
+    for opening in openings:
+        yield _slab(manifold3d, Layer(edge=opening.shape, low=low, high=high), tolerance)
 
 
 def _wedge(manifold3d: Any, bevel: Bevel, tolerance: float) -> Manifold:
@@ -251,9 +252,8 @@ def _bevelled(
     if high:
         sections = [*sections[:-1], (edge, high.low), (high.face.polyline(tolerance), layer.high)]
     made = _loft(manifold3d, sections)
-    for opening in layer.openings:
-        hole = Layer(edge=opening.shape, low=layer.low - OVERSHOOT, high=layer.high + OVERSHOOT)
-        made = made - _slab(manifold3d, hole, tolerance)
+    for hole in _holes(manifold3d, layer.openings, (layer.low, layer.high), tolerance):
+        made = made - hole
     return made
 
 
@@ -303,6 +303,14 @@ def _between(lower: Plane, upper: Plane, start: int) -> Ints:
     return start + found
 
 
+def _closed(body: Manifold, what: str) -> Mesh:
+    """Return the mesh of a body; refuse one that is not closed."""
+    mesh = _mesh(body)
+    if not mesh.watertight:
+        raise SolidError(f"{what} is empty or open")
+    return mesh
+
+
 def _mesh(body: Manifold) -> Mesh:
     raw = body.to_mesh64()
     vertices = np.array(raw.vert_properties[:, :3], dtype=np.float64)
@@ -335,10 +343,8 @@ def carved(blank: Mesh, tools: Iterable[Array]) -> Mesh:
 
     whole = _manifold(manifold3d, blank)
     hulls = [manifold3d.Manifold.hull_points(corners) for corners in tools]
-    mesh = _mesh(manifold3d.Manifold.batch_boolean([whole, *hulls], manifold3d.OpType.Subtract))
-    if not mesh.watertight:
-        raise SolidError("the carved solid is empty or open")
-    return mesh
+    made = manifold3d.Manifold.batch_boolean([whole, *hulls], manifold3d.OpType.Subtract)
+    return _closed(made, "the carved solid")
 
 
 @libraries()
@@ -364,10 +370,7 @@ def ribbed(core: Mesh, rib: Mesh, blank: Mesh) -> Mesh:
     import manifold3d
 
     body, strip, limits = (_manifold(manifold3d, one) for one in (core, rib, blank))
-    mesh = _mesh((body + strip) ^ limits)
-    if not mesh.watertight:
-        raise SolidError("the solid with its rib is empty or open")
-    return mesh
+    return _closed((body + strip) ^ limits, "the solid with its rib")
 
 
 def _manifold(manifold3d: Any, mesh: Mesh) -> Manifold:
@@ -450,20 +453,7 @@ def _prism(outline: Plane, low: float, high: float) -> Manifold:
     """
     import manifold3d
 
-    count = len(outline)
-    face = np.asarray(manifold3d.triangulate([as_pairs(outline)]), dtype=np.uint64)
-    here = np.arange(count, dtype=np.uint64)
-    after = np.roll(here, -1)
-    above = np.uint64(count)
-    sides = [
-        np.stack([here, after, after + above], 1),
-        np.stack([here, after + above, here + above], 1),
-    ]
-    points = [np.column_stack([as_pairs(outline), np.full(count, z)]) for z in (low, high)]
-    mesh = manifold3d.Mesh64(
-        np.concatenate(points), np.concatenate([face[:, ::-1], face + above, *sides])
-    )
-    return manifold3d.Manifold(mesh)
+    return _loft(manifold3d, [(outline, low), (outline, high)])
 
 
 @singledispatch

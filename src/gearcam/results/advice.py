@@ -29,7 +29,7 @@ from gearcam.base.adjustments import (
 )
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import DesignError, InfeasibleError
-from gearcam.base.inches import changes_in, changes_mm, told
+from gearcam.base.inches import changes_in, changes_mm, key_mm, told
 from gearcam.base.numerals import shortened
 from gearcam.designs.design import Design, document_of, nested_designs, value_at
 from gearcam.designs.faults import dotted
@@ -314,9 +314,8 @@ class Search:
 
     def number(self, key: str) -> Any:
         """Return what the design has at a key of the file, sizes with a class as numbers."""
-        (in_mm,) = changes_mm({key: None})
-        plain = {in_mm: without_class(value_at(self.document, in_mm))}
-        return self.own(plain)[key]
+        in_mm = key_mm(key)
+        return self.own({in_mm: without_class(value_at(self.document, in_mm))})[key]
 
     def own(self, changes: Changes) -> Changes:
         """Return changes in the units of the file."""
@@ -433,11 +432,9 @@ class Search:
     def _told(self, adjustment: Adjustment) -> Adjustment:
         """Return an adjustment in the units of the file; a single length in inches is rounded."""
         own = told(adjustment, self.result.design.units)
-        if own is adjustment or own.far or len(own.near.keys() - adjustment.near.keys()) != 1:
+        if own is adjustment or own.far or len(own.near) != 1 or own.near == adjustment.near:
             return own
-        *others, (key, value) = own.near.items()
-        if others:
-            return own
+        ((key, value),) = own.near.items()
         given = self.number(key)
         if not isinstance(value, float) or not isinstance(given, float) or value in (0.0, given):
             return own

@@ -94,7 +94,7 @@ class PartsResult(Result):
     def parts(self) -> tuple[Part, ...]:
         """The parts to be made, with bores, hubs and openings."""
 
-    @property
+    @cached_property
     @abstractmethod
     def plates(self) -> tuple[Drawing, ...]:
         """A drawing of each plate that is cut, in its own frame."""

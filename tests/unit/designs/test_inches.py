@@ -193,6 +193,11 @@ def test_texts_in_inches(text: str, told: str | None) -> None:
     assert text_in(text_in(text)) == text_in(text)
 
 
+def test_sizes_with_a_class_are_translated_once() -> None:
+    assert text_in('a_mm = ["25.4 H7", 12.7]') == 'a_in = ["1 H7", 0.5]'
+    assert set(re.findall(r'"[\d.]+ H7"', template("cam", units="inch"))) == {'"0.984252 H7"'}
+
+
 @pytest.mark.parametrize("kind", list(KINDS))
 def test_the_template_in_inches_is_valid_and_round(kind: str) -> None:
     text = template(kind, units="inch")

@@ -126,11 +126,9 @@ def grinding_tables(result: CamResult) -> dict[str, Table]:
     tables = {}
     for wall in result.cam.walls:
         angles = 0.5 * math.pi - wall.hand * theta
-        radius: Any = output.grinding_wheel_radius
-        if radius is None:
-            radius = wall.follower.radius if wall.follower.has_centre else math.inf
-        elif radius == "flat":
-            radius = math.inf
+        own = wall.follower.radius if wall.follower.has_centre else "flat"
+        given: Any = output.grinding_wheel_radius or own
+        radius = math.inf if given == "flat" else given
         far = wheel(lowered(wall, result.design.blank.clearance), angles, radius)
         tables[wall.ending] = {
             "theta_deg": np.degrees(theta),

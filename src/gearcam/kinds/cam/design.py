@@ -203,8 +203,8 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
             table = table_of("dynamics", FollowerDynamicsSpec)
             yield from placed_faults(breaches, table, document["dynamics"], ("dynamics",))
         yield from polydyne_faults(found, document)
-    yield from measured_faults(found, document, VARIANTS.meant(document))
     asked = unknowns(document)
+    yield from measured_faults(found, document, VARIANTS.meant(document), asked)
     yield from _unsolvable(document, asked)
     if {"cam", "follower"} <= found.parts.keys():
         yield from FORMS[VARIANTS.meant(document)].faults(found.parts, document)

@@ -189,7 +189,9 @@ def of_radii(motion: Any) -> bool:
     return bool(getattr(motion, "of_radii", False))
 
 
-def measured_faults(found: Examined, document: Mapping[str, Any], form: str) -> Iterator[Fault]:
+def measured_faults(
+    found: Examined, document: Mapping[str, Any], form: str, asked: Sequence[str] = ()
+) -> Iterator[Fault]:
     """Yield what a measured profile does not go with.
 
     Parameters
@@ -200,24 +202,19 @@ def measured_faults(found: Examined, document: Mapping[str, Any], form: str) -> 
         All tables as in the file.
     form : str
         The form of the cam.
+    asked : sequence of str
+        Keys of the sizes that are to be solved for.
     """
-    motion = found.parts.get(TITLE)
+    motion: Any = found.parts.get(TITLE)
     if not of_radii(motion):
         return
-    drive = document.get("drive")
-    asked = [
-        (title, key)
-        for title in ("cam", "follower")
-        if isinstance(table := document.get(title), Mapping)
-        for key, value in table.items()
-        if value == "solve"
-    ]
     if form not in _MEASURED:
         allowed = f"""kind = "cam" with cam.form = {" or ".join(f'"{one}"' for one in _MEASURED)}"""
         message = f"gives the radii of a profile, which a {form} cam does not have"
-        yield Fault((TITLE, "file"), message, getattr(motion, "file", None), allowed)
-    for where in asked:
-        yield Fault(where, "the measured profile gives it", "solve", "a length")
+        yield Fault((TITLE, "file"), message, motion.file, allowed)
+    for key in asked:
+        yield Fault(tuple(key.split(".")), "the measured profile gives it", "solve", "a length")
+    drive = document.get("drive")
     if isinstance(drive, Mapping) and drive.get("polydyne") is True:
         message = "would change the measured profile"
         yield Fault(("drive", "polydyne"), message, True, "leave it out")

@@ -40,7 +40,7 @@ from gearcam.meshing.settings import (
 )
 from gearcam.meshing.settings import KIND as MESHING
 from gearcam.parts.blank import KIND as PARTS
-from gearcam.parts.blank import BarSpec, Blank, serving
+from gearcam.parts.blank import Blank, RowBlank, serving
 from gearcam.results.kind import Kind
 from gearcam.sheets.spec import PairDrawingSpec
 
@@ -91,6 +91,18 @@ class PairOutputSpec(OutputSpec):
         doc="diameter of the pins or balls in measures.csv; a simple size that suits all tooth "
         "spaces if left out",
     )
+
+
+@dataclass(frozen=True, kw_only=True)
+class BarSpec(Bar, RowBlank):
+    """What a rack is made from: its height, its ends, a row of mounting holes.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.BarSpec(height=20.0, ends="gap", bolts=1, bolt_diameter=5.0, bolt_height=6.0)
+    BarSpec(bolts=1, bolt_diameter=5, bolt_height=6, height=20, ends='gap')
+    """
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -177,12 +189,7 @@ class GearPairDesign(Design):
     @property
     def back(self) -> RingSpec | Bar:
         """What is behind the teeth of an open ring or a rack."""
-        return self.bar_sizes if self.law_type == "rack" else self.ring
-
-    @property
-    def bar_sizes(self) -> Bar:
-        """Height and ends of a rack."""
-        return Bar(height=self.bar.height, in_gap=self.bar.ends == "gap")
+        return self.bar if self.law_type == "rack" else self.ring
 
     @property
     def law_type(self) -> str:

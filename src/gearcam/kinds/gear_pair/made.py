@@ -105,7 +105,7 @@ class MadePair(PartsResult):
                 self.tolerances,
                 self._finish,
                 self.design.ring.cutter_teeth,
-                self.design.bar_sizes,
+                self.design.bar,
             )
 
     @property

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
-from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
+from gearcam.kinds.gear_pair.design import BarSpec, GearPairDesign, PairOutputSpec
 from gearcam.kinds.gear_pair.load_settings import StressSpec
 from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.kinds.shared import AccuracySpec, ForcesSpec, GoalSpec
@@ -12,7 +12,7 @@ from gearcam.mechanics.friction import WheelFrictionSpec
 from gearcam.mechanics.material import MaterialSpec
 from gearcam.mechanics.wheel_load import WheelLoadSpec
 from gearcam.meshing.settings import ErrorsSpec, MeshingSpec
-from gearcam.parts.blank import BarSpec, Blank, WheelBlank
+from gearcam.parts.blank import Blank, WheelBlank
 from gearcam.sheets.spec import PairDrawingSpec
 
 __all__ = [

@@ -275,26 +275,26 @@ def _gear(result: GearPairResult, gear: Gear) -> Tree:
 
 _MEASURED: Final = {
     "center_radius_mm": "pin's centre from the axis",
-    "over_pins_mm": "over two pins",
+    "over_pins_mm": "",
     "chord_mm": "pitch chord",
     "chord_depth_mm": "pitch chord, depth",
     "constant_chord_mm": "constant chord",
     "constant_chord_depth_mm": "constant chord, depth",
 }
-"""Columns of what is measured whose ends are facts, with their labels."""
+"""Columns of what is measured whose ends are facts, with their labels: that over pins depends on
+what the pins are held against."""
 
 
 def _measuring(gear: Gear, asked: float | None) -> Tree:
     """Return what is measured on a wheel with a pin of the diameter `asked`, or recommended, mm."""
     table = gear.measuring.table(asked)
     tree: Tree = {"pin_diameter_mm": Fact(float(table["pin_diameter_mm"][0]), "measuring pin")}
+    over = "over one pin and the back" if gear.toothing.track.slides else "over two pins"
+    over = "between two pins" if gear.ring else over
     for name, meaning in _MEASURED.items():
         there = table[name][np.isfinite(table[name])]
         if there.any():
-            tree[name] = Fact(extent(float(there.min()), float(there.max())), meaning)
-    if "over_pins_mm" in tree and (gear.ring or gear.toothing.track.slides):
-        words = "between two pins" if gear.ring else "over one pin and the back"
-        tree["over_pins_mm"] = Fact(tree["over_pins_mm"].value, words)
+            tree[name] = Fact(extent(float(there.min()), float(there.max())), meaning or over)
     return {**tree, "spans": [*_spans(gear)] or None}
 
 

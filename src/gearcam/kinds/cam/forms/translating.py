@@ -22,6 +22,7 @@ from gearcam.base.quantities import (
     positive_length,
 )
 from gearcam.base.rules import below, needs, only_with
+from gearcam.cams.caliper import lowered
 from gearcam.cams.placing import make_follower_over_plate
 from gearcam.cams.spec import (
     GROOVE_SIDE,
@@ -46,7 +47,6 @@ from gearcam.parts.blank import RowBlank
 
 if TYPE_CHECKING:
     from gearcam.base.tolerances import Tolerances
-    from gearcam.cams.translating import TranslatingWall
     from gearcam.kinds.cam.forms.base import Parts
     from gearcam.numeric.contour import Contour
     from gearcam.parts.body import Part
@@ -322,12 +322,8 @@ class Translating(Form[TranslatingCam, PlateSpec, PlateFollower]):
 
     def _cut(self, cam: TranslatingCam) -> TranslatingCam:
         """Return the finished cam: a single wall is moved back by the clearance of the blank."""
-        clearance = self.blank.clearance
-        if not clearance:
-            return cam
-        lower: TranslatingWall = cam.lower
-        wide = replace(lower.follower, radius=lower.follower.radius + clearance)
-        return replace(cam, lower=replace(lower, follower=wide))
+        lower = lowered(cam.lower, self.blank.clearance)
+        return cam if lower is cam.lower else replace(cam, lower=lower)
 
     def finished(self, cam: TranslatingCam, parts: Parts) -> tuple[Contour, ...]:  # noqa: ARG002
         """Return the metal behind each wall, as made (see `Form.finished`)."""
