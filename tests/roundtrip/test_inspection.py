@@ -155,5 +155,5 @@ def test_drawings_say_what_is_measured() -> None:
         replace(profile("circular").design, output=PairOutputSpec(files=("drawing-svg",)))
     )
     text = made.files("drawing-svg")["gear1_drawing.svg"].decode()
-    for words in ("measuring pin", "over two pins", "constant chord", "span over 3 teeth"):
+    for words in ("measuring pin", "over pins, all spaces", "constant chord", "span over 3 teeth"):
         assert words in text

@@ -31,7 +31,7 @@ _FINER: Final = (
 )  # fmt: skip
 """The same for letters whose deviations change more often."""
 
-_TOLERANCES: Final = {
+_TOLERANCES: dict[int, tuple[int, ...]] = {
     4: (3, 4, 4, 5, 6, 7, 8, 10, 12, 14, 16, 18, 20),
     5: (4, 5, 6, 8, 9, 11, 13, 15, 18, 20, 23, 25, 27),
     6: (6, 8, 9, 11, 13, 16, 19, 22, 25, 29, 32, 36, 40),
@@ -41,7 +41,9 @@ _TOLERANCES: Final = {
     10: (40, 48, 58, 70, 84, 100, 120, 140, 160, 185, 210, 230, 250),
     11: (60, 75, 90, 110, 130, 160, 190, 220, 250, 290, 320, 360, 400),
 }
-"""Standard tolerances IT by grade, um; IT4 serves others only."""
+_TOLERANCES |= {grade + 5: tuple(10 * one for one in _TOLERANCES[grade]) for grade in (7, 8, 9)}
+"""Standard tolerances IT by grade, um; IT4 serves others only, from IT12 on those of five grades
+before are ten times as large."""
 
 _BELOW: Final = {
     "d": (20, 30, 40, 50, 65, 80, 100, 120, 145, 170, 190, 210, 230),
@@ -69,9 +71,9 @@ _ABOVE: Final[Mapping[str, tuple[int, ...]]] = {
 begin at it."""
 
 GRADES: Final = {
-    "D": (8, 11), "E": (7, 9), "F": (6, 9), "G": (5, 7), "H": (5, 11), "JS": (5, 11), "K": (5, 8),
+    "D": (8, 11), "E": (7, 9), "F": (6, 9), "G": (5, 7), "H": (5, 14), "JS": (5, 14), "K": (5, 8),
     "M": (5, 9), "N": (5, 9), "P": (5, 9), "R": (5, 8), "S": (5, 8),
-    "d": (8, 11), "e": (6, 9), "f": (5, 9), "g": (5, 7), "h": (5, 11), "js": (5, 11), "k": (5, 8),
+    "d": (8, 11), "e": (6, 9), "f": (5, 9), "g": (5, 7), "h": (5, 14), "js": (5, 14), "k": (5, 8),
     "m": (5, 8), "n": (5, 8), "p": (5, 8), "r": (5, 8), "s": (5, 8),
 }  # fmt: skip
 """The first and the last grade of each letter."""

@@ -52,7 +52,8 @@ def frames(board: Board, wheel: Wheel, heading: Heading, left: float) -> None:
     notes, part = heading.notes, wheel.part
     if notes.profile_tolerance:
         spot = complex(wheel.points[np.argmax((wheel.points * cmath.rect(1.0, -0.7)).real)])
-        frame(board, spot, "profile", fine(notes.profile_tolerance))
+        related = ("A",) if wheel.bore else ()
+        frame(board, spot, "profile", fine(notes.profile_tolerance), *related)
     if notes.runout and wheel.turns and wheel.bore:
         back = left + (part.hub.back if part.hub else 0.0)
         top = max(float(ends[-1]) for ends, _ in wheel.section.slabs if len(ends))
@@ -87,7 +88,7 @@ def _radii(board: Board, wheel: Wheel) -> None:
     for radius, word in ((float(reach.max()), "max"), (float(reach.min()), "min")):
         # the first of the points on an arc about the axis, not one that rounding chooses
         point = complex(teeth[np.argmax(np.abs(reach - radius) < SAME)])
-        circle, words = Circle(center=0j, diameter=2.0 * radius), f"R{decimal(radius)} {word}"
+        circle, words = Circle(center=0j, diameter=2.0 * radius), f"(R{decimal(radius)} {word})"
         if not board.callout(circle, words, "radius", angles=np.array([cmath.phase(point)])):
             # a leader without direction to the axis
             board.label(point, words, (f"{word}. radius from axis", decimal(radius)))

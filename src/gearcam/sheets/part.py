@@ -135,7 +135,8 @@ def _front_view(board: Board, wheel: Wheel) -> None:
 
 def _front_sizes(board: Board, wheel: Wheel) -> None:
     left, low, right, high = extremes(wheel.points)
-    across, up = [Measure(left, right)], [Measure(low, high)]
+    # sizes of an outline that its file defines are for reference, as those of a profile are
+    across, up = ([Measure(*ends, aside=wheel.turns)] for ends in ((left, right), (low, high)))
     if wheel.round:
         across, up = [Measure(left, right, diameter_text((right - left).real))], []
     elif wheel.placed:

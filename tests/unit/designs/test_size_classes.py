@@ -89,7 +89,7 @@ def test_python_takes_texts_and_sizes(given: Any) -> None:
     ("text", "key", "words", "hint"),
     [
         ('bore_diameter_mm = "25 h7"', "bore_diameter_mm", "class of a shaft", "25 H7"),
-        ('bore_diameter_mm = "25 H13"', "bore_diameter_mm", "H13 are not known", "25 H11"),
+        ('bore_diameter_mm = "25 H15"', "bore_diameter_mm", "H15 are not known", "25 H14"),
         ('bore_diameter_mm = [16, "25 Z7"]', "bore_diameter_mm[1]", "Z is no letter", "25 S7"),
         ('bore_diameter_mm = "600 H7"', "bore_diameter_mm", "not known for this size", ""),
         ('bore_diameter_mm = "\u00d825 H7"', "bore_diameter_mm", "not a number", 'write "25 H7"'),

@@ -108,7 +108,7 @@ def test_a_size_with_a_class_is_a_number() -> None:
         ("H7", "is no size with a tolerance class", '"25 H7"'),
         ("25", "is no size with a tolerance class", '"25 H7"'),
         ("25,5 H7", "is no size with a tolerance class", '"25 H7"'),
-        ("25 H12", "limits of H12 are not known", "H5 to H11"),
+        ("25 H15", "limits of H15 are not known", "H5 to H14"),
         ("25 K9", "limits of K9 are not known", "K5 to K8"),
         ("25 ZA7", "the letter ZA is not known", "D, E, F"),
         ("0.9 H7", "not known for this size", "from 1 to 500 mm"),
@@ -126,7 +126,7 @@ def test_what_is_not_known_is_refused_with_what_is(text: str, words: str, allowe
 @pytest.mark.parametrize(
     ("text", "near"),
     [
-        ("25 h7", "25 H7"), ("25 k9", "25 K8"), ("25 H18", "25 H11"), ("25 H1", "25 H5"),
+        ("25 h7", "25 H7"), ("25 k9", "25 K8"), ("25 H18", "25 H14"), ("25 H1", "25 H5"),
         ("25 G9", "25 G7"), ("25 B11", "25 D11"), ("25 ZA7", "25 S7"), ("600 H7", ""),
     ],
 )  # fmt: skip
@@ -189,3 +189,11 @@ def test_keyways_are_those_of_the_standard() -> None:
     assert [1000 * keyway_of(bore).hub_width.upper for bore in (10, 12, 30, 44, 75, 130)] == (  # pyright: ignore
         pytest.approx([12.5, 15, 18, 21.5, 26, 31])
     )
+
+
+@pytest.mark.parametrize(
+    ("text", "upper"),
+    [("3 H12", 100), ("6.6 H13", 220), ("30 H12", 210), ("400 H13", 890), ("500 H14", 1550)],
+)
+def test_holes_for_screws_have_coarse_grades(text: str, upper: float) -> None:
+    assert (FitSize(text).lower, FitSize(text).upper) == (0.0, pytest.approx(upper / 1000))

@@ -276,7 +276,7 @@ def _gear(result: GearPairResult, gear: Gear) -> Tree:
 _MEASURED: Final = {
     "center_radius_mm": "pin's centre from the axis",
     "over_pins_mm": "",
-    "chord_mm": "pitch chord",
+    "chord_mm": "pitch chord, all teeth",
     "chord_depth_mm": "pitch chord, depth",
     "constant_chord_mm": "constant chord",
     "constant_chord_depth_mm": "constant chord, depth",
@@ -289,7 +289,7 @@ def _measuring(gear: Gear, asked: float | None) -> Tree:
     """Return what is measured on a wheel with a pin of the diameter `asked`, or recommended, mm."""
     table = gear.measuring.table(asked)
     tree: Tree = {"pin_diameter_mm": Fact(float(table["pin_diameter_mm"][0]), "measuring pin")}
-    over = "over one pin and the back" if gear.toothing.track.slides else "over two pins"
+    over = "over one pin and the back" if gear.toothing.track.slides else "over pins, all spaces"
     over = "between two pins" if gear.ring else over
     for name, meaning in _MEASURED.items():
         there = table[name][np.isfinite(table[name])]
