@@ -213,11 +213,11 @@ def test_every_key_is_made_or_refused_with_the_reason(body: str) -> None:
             refused.add(key)
             continue
         (region, rest), (second, others) = made
-        both = region is not None and second is not None
-        moved = region.symmetric_difference(second).area if both else 0.0
+        pair = None if region is None or second is None else (region, second)
+        moved = pair[0].symmetric_difference(pair[1]).area if pair else 0.0
         assert moved > 1e-3 or rest != others, f"{key} makes no difference to {body}"
-        if key in AREAS and both:
-            cut = abs(region.area - second.area)
+        if key in AREAS and pair:
+            cut = abs(pair[0].area - pair[1].area)
             assert cut == pytest.approx(AREAS[key], rel=0.03), f"{key} of {body}"
     assert refused == BODIES[body][2]
 
