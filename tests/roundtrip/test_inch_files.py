@@ -142,6 +142,13 @@ def test_a_program_is_in_inches() -> None:
     assert "G20" in text.split()
     assert "G21" not in text
     assert not re.search(r"\d mm\b", text)
+    heads = [
+        np.array(re.findall(r"\b[XYZ](-?\d+(?:\.\d+)?)", "\n".join(lines))).astype(float)
+        for lines in ([x for x in one.splitlines() if "(" in x] for one in (text, plain))
+    ]
+    assert len(heads[0]) == len(heads[1]) > 10
+    assert np.any(heads[1] > INCH)
+    assert heads[0] * INCH == pytest.approx(heads[1], abs=1e-3)
     for axis, factor in (("X", INCH), ("Z", INCH), ("A", 1.0), ("F", 1.0)):
         here, there = (
             np.array(re.findall(rf"(?<![A-Z(]){axis}(-?[\d.]+)", "\n".join(lines))).astype(float)

@@ -17,6 +17,7 @@ for a place where A is already, even by rounding, may make a whole turn; it is l
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
@@ -24,7 +25,7 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.inches import file_unit
-from gearcam.base.numerals import decimal
+from gearcam.base.numerals import decimal, formatted
 from gearcam.numeric.arrays import Array
 
 _DIGITS: int = 5
@@ -35,6 +36,9 @@ _LONGEST: int = 70
 
 RUN_UP: int = 3
 """Time for the spindle to come to its speed, s."""
+
+_COORDINATE = re.compile(r"(?<=\b[XYZ])-?\d+(?:\.\d+)?")
+"""The number of a place along an axis in a comment: in the unit of the program, without naming it."""
 
 _START = "G21 G17 G40 G49 G54 G80 G90 G94", "G61", "G53 G0 Z0"
 _END = "G53 G0 Z0", "M5", "M30"
@@ -86,12 +90,17 @@ def gcode_bytes(program: RotaryProgram) -> bytes:
         ASCII.
     """
     unit = file_unit()
-    notes, start = map(unit.told, program.notes), _START
+    notes, start = [unit.told(note) for note in program.notes], _START
     if unit.size != 1.0:
         *places, fine = program.decimals
         moves = program.moves / np.array([unit.size] * 3 + [1.0])
         decimals = [*(one + 2 for one in places), fine]
         program = replace(program, moves=moves, decimals=decimals)
+
+        def coordinate(found: re.Match[str]) -> str:
+            return formatted(round(float(found[0]) / unit.size, max(decimals)), 9)
+
+        notes = [_COORDINATE.sub(coordinate, note) for note in notes]
         start = [words.replace("G21", "G20") for words in start]
     lines = [f"({line})" for note in notes for line in _wrapped(note)]
     lines += [*start, *_moved(program), *_END]
