@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
@@ -39,9 +40,11 @@ def as_in_file(fault: Fault, document: Mapping[str, Any]) -> Fault:
         value = fault.value
     else:
         message = message.replace(show(fault.value), _VALUE, 1)
-    measured = isinstance(value, str) and "is not a number" in message and key_in(key) == key
+    unit = unit_of(key)
+    wrong = isinstance(value, str) and re.search("is not (a number|one of the allowed)", message)
+    measured = wrong and unit.startswith("in") and "did you mean" not in hint  # such as "solve"
     if measured:
-        hint = measure_hint(value, unit_of(key), key=key, classes="ISO 286" in allowed)
+        hint = measure_hint(value, unit, key=key, classes="ISO 286" in allowed)
     return replace(
         fault,
         path=path,

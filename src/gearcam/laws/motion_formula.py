@@ -55,7 +55,8 @@ class MotionFormula:
     lift: Given = param(
         TEXT,
         function=True,
-        doc="formula in theta, rad, such as 5*(1 - cos(theta)), in mm, or rad if oscillating",
+        doc="formula in theta, rad, such as 5*(1 - cos(theta)); in millimetres, also in files in "
+        "inches, or rad if oscillating",
     )
 
     def problems(self) -> Iterator[Breach]:

@@ -166,6 +166,27 @@ def test_mistakes_are_told_in_the_words_of_the_file(
     assert problem.line
 
 
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [
+        ("2 in", "write 2: the number alone"), ("1/2", "write 0.5"), ("50.8 mm", "write 2: 50.8 mm is"),
+        ("sollve", "did you mean solve?"),
+    ],
+)  # fmt: skip
+def test_measures_where_a_word_may_stand(value: str, words: str) -> None:
+    text = template("cam", units="inch").replace(
+        "prime_radius_in = 1.68", f'prime_radius_in = "{value}"'
+    )
+    told = problems(text)["cam.prime_radius_in"].hint
+    assert words in told
+    assert " or " not in told
+
+
+def test_a_formula_says_that_it_is_in_mm() -> None:
+    text = re.sub(r"\s*# +", " ", template("cam", units="inch"))
+    assert re.search(r"\(1 - cos\(theta\)\); in millimetres, also in files in inches", text)
+
+
 def test_what_is_in_mm_in_it_keeps_its_name() -> None:
     text = PAIR.replace("bore_diameter_in = 0.375", "bore_diameter_mm = -8")
     assert problems(text).keys() == {"blank.bore_diameter_mm"}
