@@ -158,6 +158,51 @@ def test_a_program_is_in_inches() -> None:
         assert here * factor == pytest.approx(there, abs=1e-3)
 
 
+@pytest.mark.parametrize(
+    ("name", "scaled"),
+    [
+        ("tappet", {"s", "ds", "d2s", "d3s"}),
+        ("translating_cam", {"s", "d2s", "d3s"}),  # ds is mm per mm
+        ("plate_cam_oscillating", set()),
+        ("cylinder_cam", {"s", "ds", "d2s", "d3s", "X", "Y", "Z"}),
+        ("globoidal_indexer", {"X", "Y", "Z"}),
+    ],
+)
+def test_columns_that_name_no_unit_are_in_inches_too(name: str, scaled: set[str]) -> None:
+    mm, inch = (
+        built(gearcam.load(PROFILES / f"{name}.toml").with_({"output.units": units}))
+        for units in ("mm", "inch")
+    )
+    both = zip(mm.files("csv").values(), inch.files("csv").values(), strict=True)
+    powers = {"d2s": 1, "d3s": 2} if name == "translating_cam" else {}
+    changed = set[str]()
+    for old, new in both:
+        there, here = (
+            np.genfromtxt(io.BytesIO(one), delimiter=",", names=True, dtype=None, encoding="utf-8")
+            for one in (old, new)
+        )
+        for column in {*(there.dtype.names or ())} & {*(here.dtype.names or ())} - {"wall"}:
+            plain = np.array_equal(there[column], here[column])
+            changed |= set[str]() if plain else {column}
+            factor = INCH ** powers.get(column, -1) if column in scaled else 1.0
+            assert here[column] == pytest.approx(there[column] * factor, rel=1e-9, abs=1e-9)
+    assert changed == scaled
+
+
+def test_followed_lifts_are_in_inches() -> None:
+    found = []
+    for units in ("mm", "inch"):
+        result = built(gearcam.load(PROFILES / "tappet.toml").with_({"output.units": units}))
+        points = result.contours[0].points
+        outline = np.column_stack([points.real, points.imag])
+        data = result.follow(outline).files["followed.csv"]
+        found.append(np.genfromtxt(io.BytesIO(data), delimiter=",", names=True))
+    mm, inch = found
+    assert np.ptp(mm["s"]) > 8.0
+    for name in ("s", "s_asked", "difference", "error"):
+        assert inch[name] * INCH == pytest.approx(mm[name], rel=1e-9, abs=1e-12)
+
+
 def test_the_summary_says_its_unit(inch: Any, mm: Any) -> None:
     here, there = inch.to_dict(), mm.to_dict()
     assert here["units"] == "inch"

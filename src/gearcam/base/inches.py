@@ -44,11 +44,14 @@ _WRITTEN: Final = 13
 
 _MM: Final = re.compile(
     r"(?<!_n)(?<!_n_s)(?<!_kg)(?<!_g)(?<!_per)_mm(?P<power>[23]?)"
-    r"(?=(?:_s\d?|_min|_per_rad\d?)?(?!\w))"
+    r"(?=(?:_s\d?|_min|_per_(?:rad|deg|mm)\d?)?(?!\w))"
 )
 """The unit at the end of a name that is a length, an area, a volume, or one of them per time."""
 
-_IN: Final = re.compile(r"(?<!\bmodule)_in(?=(?:_s|_min|_per_rad\d?)?(?!\w))")
+_PER: Final = re.compile(r"_per_mm(?P<power>\d?)(?!\w)")
+"""The unit at the end of the name of what is per length."""
+
+_IN: Final = re.compile(r"(?<!\bmodule)_in(?=(?:_s|_min|_per_(?:rad|deg|in)\d?)?(?!\w))")
 
 _NUMBER: Final = r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
 _SET: Final = re.compile(
@@ -71,7 +74,7 @@ _MEASURE: Final = re.compile(
 _FIT: Final = rf"({_NUMBER})(\s*[A-Za-z]{{1,2}}\d{{1,2}})"
 """A size with a tolerance class, such as 25 H7."""
 
-_UNIT: Final = re.compile(r"(mm|um)([23]?)((?:/.*)?)")
+_UNIT: Final = re.compile(r"(mm|um)([23]?)(?:/mm(\d?)|((?:/.*)?))")
 _ENDS: Final = re.compile(rf"from ({_NUMBER}) to ({_NUMBER}) mm")
 
 _T = TypeVar("_T")
@@ -79,7 +82,8 @@ _T = TypeVar("_T")
 
 def key_in(key: str) -> str:
     """Return a name as it is in inches: ``blank.rim_in`` for ``blank.rim_mm``."""
-    return _MM.sub(r"_in\g<power>", re.sub(rf"\b{_MODULE}\b", _PITCH, key))
+    key = re.sub(rf"\b{_MODULE}\b", _PITCH, key)
+    return _PER.sub(r"_per_in\g<power>", _MM.sub(r"_in\g<power>", key))
 
 
 def spellings_in(key: str) -> list[str]:
@@ -314,16 +318,17 @@ def unit_in(unit: str) -> tuple[str, float]:
     found = _UNIT.fullmatch(unit)
     if found is None:
         return unit, 1.0
-    power = int(found[2] or 1)
-    return f"in{found[2]}{found[3]}", ((1e-3 if found[1] == "um" else 1.0) / INCH) ** power
+    power, below = int(found[2] or 1), 0 if found[3] is None else int(found[3] or 1)
+    factor = (1e-3 if found[1] == "um" else 1.0) ** power * INCH ** (below - power)
+    return f"in{found[2]}" + (f"/in{found[3]}" if below else found[4]), factor
 
 
 def name_in(name: str) -> tuple[str, float]:
     """Return the name of a fact or a column in inches, and what its numbers are times."""
-    if name.endswith("_per_mm"):
-        return f"{name[:-2]}in", INCH
-    found = _MM.search(name)
-    return (key_in(name), INCH ** -int(found["power"] or 1)) if found else (name, 1.0)
+    above, below = (
+        int(one["power"] or 1) if one else 0 for one in (_MM.search(name), _PER.search(name))
+    )
+    return key_in(name), INCH ** (below - above)
 
 
 def _times(value: Any, factor: float) -> Any:

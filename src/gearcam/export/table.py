@@ -30,13 +30,13 @@ _RADII: Final = "rho"
 """Beginning of the names of columns that are radii of curvature: infinite where straight."""
 
 
-def _in_unit(name: str, values: ArrayLike) -> tuple[str, ArrayLike]:
+def _in_unit(name: str, values: ArrayLike, full: str | None) -> tuple[str, ArrayLike]:
     """Return the name and the values of a column in the unit of files."""
-    name, factor = file_unit().column(name)
-    return name, values if factor == 1.0 else np.ma.asanyarray(values) * factor
+    named, factor = file_unit().column(full or name)
+    return name if full else named, values if factor == 1.0 else np.ma.asanyarray(values) * factor
 
 
-def table_bytes(columns: Mapping[str, ArrayLike]) -> bytes:
+def table_bytes(columns: Mapping[str, ArrayLike], full: Mapping[str, str] | None = None) -> bytes:
     """Write columns under a header line.
 
     Parameters
@@ -45,6 +45,8 @@ def table_bytes(columns: Mapping[str, ArrayLike]) -> bytes:
         In mm and in order; the name carries the unit's suffix, such as ``x_mm``, or ``x_in`` in
         files in inches. Texts are written in quotes
         if they need them.
+    full : mapping of str to str, or None
+        Of columns without the suffix, a name with it: ``lift_mm`` of ``s``.
 
     Returns
     -------
@@ -58,7 +60,8 @@ def table_bytes(columns: Mapping[str, ArrayLike]) -> bytes:
     ValueError
         If the columns differ in length, or a name holds a comma, a quote or a line break.
     """
-    columns = dict(_in_unit(name, values) for name, values in columns.items())
+    full = full or {}
+    columns = dict(_in_unit(name, values, full.get(name)) for name, values in columns.items())
     bad = [name for name in columns if not name or set(name) & set(',"\r\n')]
     if bad:
         raise ValueError(f"not allowed as column names: {bad}")
@@ -107,6 +110,19 @@ def _exact(values: Array) -> Array:
         near = np.flatnonzero(~(np.abs(scaled - np.rint(scaled)) > _NEAR * scaled))
     values[near] = [exact(value) for value in values[near].tolist()]
     return values
+
+
+def motion_bytes(table: Mapping[str, ArrayLike]) -> bytes:
+    """Write the motion of a follower: its lift and three derivatives, in the columns 1 to 4, as s.
+
+    Parameters
+    ----------
+    table : mapping of str to (n,) array
+        Columns of `motion` of a cam.
+    """
+    full = dict[str, str](zip(("s", "ds", "d2s", "d3s"), [*table][1:5], strict=True))
+    short = {name: one for one, name in full.items()}
+    return table_bytes({short.get(name, name): values for name, values in table.items()}, full)
 
 
 def outline_bytes(points: Plane) -> bytes:

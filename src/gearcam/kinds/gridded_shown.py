@@ -87,8 +87,8 @@ GridPart = tuple["RollerWall", dict[str, "Array"], "RollerContact", "Mask"]
 """A wall, columns of its n cam angles, its grid of (n, k) points, and which of these count."""
 
 
-def wall_columns(parts: Iterable[GridPart], hand: float) -> dict[str, Array]:
-    """Return the columns of the table of walls.
+def wall_bytes(parts: Iterable[GridPart], hand: float) -> bytes:
+    """Write the table of walls.
 
     Parameters
     ----------
@@ -99,10 +99,12 @@ def wall_columns(parts: Iterable[GridPart], hand: float) -> dict[str, Array]:
 
     Returns
     -------
-    dict of str to array
-        The wall, the given columns, place along the roller, points, normals into the metal, and
-        pressure angle.
+    bytes
+        CSV: the wall, the given columns, place along the roller, points, normals into the
+        metal, and pressure angle.
     """
+    from gearcam.export.table import table_bytes
+
     found = []
     for wall, given, grid, on in parts:
         points, normals = grid.points[on].T, grid.normals[on].T
@@ -122,14 +124,8 @@ def wall_columns(parts: Iterable[GridPart], hand: float) -> dict[str, Array]:
                 "pressure_angle_deg": np.degrees(grid.pressure[on]),
             }
         )
-    return {name: np.concatenate([one[name] for one in found]) for name in found[0]}
-
-
-def table_files(walls: Mapping[str, Any], motion: Mapping[str, Any]) -> Files:
-    """Return the files of the columns of walls and motion."""
-    from gearcam.export.table import table_bytes
-
-    return {"walls.csv": table_bytes(walls), "motion.csv": table_bytes(motion)}
+    columns = {name: np.concatenate([one[name] for one in found]) for name in found[0]}
+    return table_bytes(columns, {axis: f"{axis}_mm" for axis in "XYZ"})
 
 
 def picture_files(result: GriddedCam, drawing: Drawing) -> Files:

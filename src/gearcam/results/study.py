@@ -88,6 +88,8 @@ class StudyResult(NotebookView):
     pace : (n, 2) array or None
         Places of the driver over a cycle, in the unit of the moving picture, increasing, and the
         time at each, s: the motion that this picture can follow.
+    full : mapping of str to str
+        Of columns without a unit in their names, one with it: ``lift_mm`` of ``s``.
     further : mapping of str to mapping
         Columns of further tables by name, such as ``trials``: the file ``errors_trials.csv``.
     pages : mapping of str to bytes
@@ -122,6 +124,7 @@ class StudyResult(NotebookView):
     coloured: Callable[[], Iterable[ColouredCurve]] = tuple
     pace: Array | None = None
     further: Mapping[str, Mapping[str, ArrayLike]] = field(default_factory=dict)
+    full: Mapping[str, str] = field(default_factory=dict)
     pages: Mapping[str, bytes] = field(default_factory=dict)
     lines: tuple[str, ...] = ()
     interrupted: str = ""
@@ -254,9 +257,8 @@ class StudyResult(NotebookView):
         stem = Path(self.file).stem
         tables = {f"{stem}_{name}.csv": table for name, table in self.further.items()}
         with files_in(self.result.design.files_in):
-            written = {
-                name: table_bytes(one) for name, one in {self.file: self.table, **tables}.items()
-            }
+            every = {self.file: self.table, **tables}
+            written = {name: table_bytes(one, self.full) for name, one in every.items()}
         return {**written, **self.pages}
 
     def to_dict(self) -> dict[str, Any]:

@@ -12,7 +12,7 @@ import pytest
 
 import gearcam
 from gearcam.base.errors import DesignError, Problem
-from gearcam.base.inches import text_in
+from gearcam.base.inches import key_mm, name_in, text_in, unit_in
 from gearcam.cli import main
 from gearcam.designs.design import hash_of, loads
 from gearcam.designs.kind import KINDS
@@ -206,12 +206,33 @@ def test_what_is_in_mm_in_it_keeps_its_name() -> None:
         ("a_mm of up to 12.7 fits", "a_in of up to 0.5 fits"),
         ("prime_radius_mm 3.5 mm", "prime_radius_in 0.1378 in"),
         ("speed_mm_s, x_mm_per_rad, lengths in mm", "speed_in_s, x_in_per_rad, lengths in inches"),
+        ("x_mm_per_mm, x_mm_per_mm2, x_mm_per_deg", "x_in_per_in, x_in_per_in2, x_in_per_deg"),
         ("stiffness_n_mm = 3: 12 N/mm, 3 N mm, 5 kg mm2, 1/mm", None),
     ],
 )
 def test_texts_in_inches(text: str, told: str | None) -> None:
     assert text_in(text) == (text if told is None else told)
     assert text_in(text_in(text)) == text_in(text)
+
+
+@pytest.mark.parametrize(
+    ("name", "unit", "named", "united", "factor"),
+    [
+        ("a_mm", "mm", "a_in", "in", 1.0 / 25.4), ("a_mm2", "mm2", "a_in2", "in2", 25.4**-2),
+        ("a_mm_per_mm", "mm/mm", "a_in_per_in", "in/in", 1.0),
+        ("a_mm_per_mm2", "mm/mm2", "a_in_per_in2", "in/in2", 25.4),
+        ("a_mm_per_deg", "mm/deg", "a_in_per_deg", "in/deg", 1.0 / 25.4),
+        ("a_mm_s2", "mm/s2", "a_in_s2", "in/s2", 1.0 / 25.4),
+    ],
+)  # fmt: skip
+def test_both_units_of_a_quotient_are_in_inches(
+    name: str, unit: str, named: str, united: str, factor: float
+) -> None:
+    for found, wanted in ((name_in(name), named), (unit_in(unit), united)):
+        assert found == (wanted, pytest.approx(factor, rel=1e-15))
+    assert name_in("a_deg_per_mm") == ("a_deg_per_in", 25.4)
+    assert unit_in("um/mm") == ("in/in", pytest.approx(1e-3))
+    assert key_mm("a_in_per_in") == "a_mm_per_mm"
 
 
 def test_sizes_with_a_class_are_translated_once() -> None:

@@ -26,6 +26,9 @@ if TYPE_CHECKING:
     from gearcam.kinds.cam.result import CamResult
     from gearcam.results.study import Progress
 
+_LIFTS: Final = ("s", "s_asked", "difference", "error", "s_fitted", "missed")
+"""Columns in the unit of the lift, which their names do not say."""
+
 _FILE: Final = "followed.csv"
 
 _SAGITTA = 0.01
@@ -214,6 +217,7 @@ def _follow(
         study=result.kind.studies["follow"],
         file=_FILE,
         table=columns,
+        full=dict.fromkeys(_LIFTS, f"lift_{facts['unit']}"),
         group=facts,
         study_findings=found,
     )
@@ -255,6 +259,7 @@ def _fit(
         study=result.kind.studies["follow"],
         file=_FILE,
         table=columns,
+        full=dict.fromkeys(_LIFTS, f"lift_{facts['unit']}"),
         group=facts,
         study_findings=(*found, *one.findings),
         drawn=one.charts,

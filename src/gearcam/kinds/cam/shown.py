@@ -166,15 +166,12 @@ def _tables(result: CamResult, _: Measured) -> Files:
     Vertices of the profile; lift, velocity, acceleration, jerk, pressure angle and radii of
     curvature over the cam angle or travel.
     """
-    from gearcam.export.table import outline_bytes, table_bytes
+    from gearcam.export.table import motion_bytes, outline_bytes
 
-    table = result.motion()
-    short = dict(zip([*table][1:5], ("s", "ds", "d2s", "d3s"), strict=True))
-    motion = {short.get(name, name): values for name, values in table.items()}
     walls = zip(result.cam.walls, result.contours, strict=True)
     return {
         **{f"profile{wall.ending}.csv": outline_bytes(made.points) for wall, made in walls},
-        "motion.csv": table_bytes(motion),
+        "motion.csv": motion_bytes(result.motion()),
     }
 
 

@@ -18,8 +18,7 @@ from gearcam.kinds.gridded_shown import (
     picture_files,
     solid_facts,
     spread_facts,
-    table_files,
-    wall_columns,
+    wall_bytes,
 )
 from gearcam.laws.phases_of_lift import TURN
 from gearcam.report.file import report_files
@@ -104,6 +103,7 @@ def _tables(result: GloboidalCamResult, _: Any) -> Files:
     pressure angles over the cam angle: also the path of a mill as wide as the groove, whose axis is
     that of a roller.
     """
+    from gearcam.export.table import table_bytes
     from gearcam.spatial.globoidal_surface import rib_angles
 
     cam, parts = result.cam, []
@@ -113,7 +113,8 @@ def _tables(result: GloboidalCamResult, _: Any) -> Files:
         turns = np.floor(theta / TURN)
         angles = {"roller": turns.astype(int), "theta_deg": np.degrees(theta - TURN * turns)}
         parts.append((wall, angles, grid, cam.between_faces(grid.points)))
-    return table_files(wall_columns(parts, cam.hand), result.motion())
+    walls = wall_bytes(parts, cam.hand)
+    return {"walls.csv": walls, "motion.csv": table_bytes(result.motion())}
 
 
 def _svg(result: GloboidalCamResult, _: Any) -> Files:

@@ -16,8 +16,7 @@ from gearcam.kinds.gridded_shown import (
     picture_files,
     solid_facts,
     spread_facts,
-    table_files,
-    wall_columns,
+    wall_bytes,
 )
 from gearcam.kinds.shared import steps_of_turn
 from gearcam.kinds.spatial_cam.milled import MILLED
@@ -176,14 +175,14 @@ def _tables(result: SpatialCamResult, _: Any) -> Files:
     distance along the roller's axis, X, Y, Z the point in mm, nx, ny, nz the normal into the metal;
     with the pressure angle. Lift, its derivatives and pressure angles over the cam angle.
     """
+    from gearcam.export.table import motion_bytes
+
     theta, count = result.wall_angles, result.design.output.wall_points
     all_of = np.ones((len(theta), count), dtype=bool)
     angles = {"theta_deg": np.degrees(theta)}
     parts = [(wall, angles, wall.grid(theta, count), all_of) for wall in result.cam.walls]
-    table = result.motion()
-    short = dict(zip([*table][1:5], ("s", "ds", "d2s", "d3s"), strict=True))
-    motion = {short.get(name, name): values for name, values in table.items()}
-    return table_files(wall_columns(parts, result.cam.hand), motion)
+    walls = wall_bytes(parts, result.cam.hand)
+    return {"walls.csv": walls, "motion.csv": motion_bytes(result.motion())}
 
 
 def _caliper(result: SpatialCamResult, _: Any) -> Files:
