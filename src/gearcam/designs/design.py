@@ -262,10 +262,14 @@ class Design:
         units = changes.get("units", self.units)
         document = own_document(self) if units != "mm" else document_of(self)
         left_out: list[Path] = []
+        spelt: dict[str, str] = {}
         for name, value in changes.items():
             key = key_of(KINDS[self.kind].repeated, name) if isinstance(name, str) else name
             if self.units == "inch" == units and isinstance(key, str):
                 ((key, value),) = changes_in({key: value}).items()
+            if (other := spelt.setdefault(key, name)) != name:
+                what = f"is given beside {other}"
+                raise DesignError([Problem(what, self.source, key=name, allowed="one of them")])
             place: Any = document
             step: str | int = ""
             try:

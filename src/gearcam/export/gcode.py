@@ -38,7 +38,7 @@ RUN_UP: int = 3
 """Time for the spindle to come to its speed, s."""
 
 _COORDINATE = re.compile(r"(?<=\b[XYZ])-?\d+(?:\.\d+)?")
-"""The number of a place along an axis in a comment: in the unit of the program, without naming it."""
+"""A place along an axis in a comment: in the unit of the program, which is not said there."""
 
 _START = "G21 G17 G40 G49 G54 G80 G90 G94", "G61", "G53 G0 Z0"
 _END = "G53 G0 Z0", "M5", "M30"

@@ -124,6 +124,12 @@ def test_changes_are_in_inches_or_in_mm() -> None:
         design.with_({"blank.bore_diameter_in": -1})
 
 
+def test_a_change_is_given_in_inches_or_in_mm() -> None:
+    both = {"blank.bore_diameter_in": 0.5, "blank.bore_diameter_mm": 8}
+    with pytest.raises(DesignError, match=r"_mm: is given beside blank\.bore_diameter_in"):
+        read(PAIR).with_(both)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "key", "message", "words"),
     [
@@ -169,7 +175,8 @@ def test_mistakes_are_told_in_the_words_of_the_file(
 @pytest.mark.parametrize(
     ("value", "words"),
     [
-        ("2 in", "write 2: the number alone"), ("1/2", "write 0.5"), ("50.8 mm", "write 2: 50.8 mm is"),
+        ("2 in", "write 2: the number alone"), ("1/2", "write 0.5"),
+        ("50.8 mm", "write 2: 50.8 mm is"),
         ("sollve", "did you mean solve?"),
     ],
 )  # fmt: skip
