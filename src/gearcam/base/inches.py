@@ -74,7 +74,7 @@ _MEASURE: Final = re.compile(
 _FIT: Final = rf"({_NUMBER})(\s*[A-Za-z]{{1,2}}\d{{1,2}})"
 """A size with a tolerance class, such as 25 H7."""
 
-_UNIT: Final = re.compile(r"(mm|um)([23]?)(?:/mm(\d?)|((?:/.*)?))")
+_UNIT: Final = re.compile(r"(mm|um|1(?=/mm))([23]?)(?:/mm(\d?)|((?:/.*)?))")
 _ENDS: Final = re.compile(rf"from ({_NUMBER}) to ({_NUMBER}) mm")
 
 _T = TypeVar("_T")
@@ -318,9 +318,11 @@ def unit_in(unit: str) -> tuple[str, float]:
     found = _UNIT.fullmatch(unit)
     if found is None:
         return unit, 1.0
-    power, below = int(found[2] or 1), 0 if found[3] is None else int(found[3] or 1)
+    power = 0 if found[1] == "1" else int(found[2] or 1)
+    below = 0 if found[3] is None else int(found[3] or 1)
     factor = (1e-3 if found[1] == "um" else 1.0) ** power * INCH ** (below - power)
-    return f"in{found[2]}" + (f"/in{found[3]}" if below else found[4]), factor
+    above = f"in{found[2]}" if power else "1"
+    return above + (f"/in{found[3]}" if below else found[4]), factor
 
 
 def name_in(name: str) -> tuple[str, float]:

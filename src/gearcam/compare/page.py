@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearcam.compare.table import rows
+from gearcam.compare.table import rows, units_of
 from gearcam.compare.variants import Variant
 from gearcam.numeric.pose import Pose
 from gearcam.pictures import drawings
@@ -69,7 +69,8 @@ def _chart(name: str, made: Sequence[Variant], driver: str) -> dict[str, Any]:
         for k, chart in alike
         for kind, line in enumerate(chart.lines)
     ]
-    data = chart_data(name, _one_of([(made[k].label, chart) for k, chart in alike]), driver)
+    whole = _one_of([(made[k].label, chart) for k, chart in alike])
+    data = chart_data(name, whole, driver, units_of(made))
     lines = [{**line, **whose} for line, whose in zip(data["lines"], own, strict=True)]
     return {**data, "lines": lines}
 

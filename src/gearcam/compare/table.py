@@ -42,6 +42,12 @@ class Row(ShortRepr):
         return len({*self.cells}) > 1
 
 
+def units_of(variants: Sequence[Variant]) -> str:
+    """Return the units in which variants that can be made are compared: inches if all have them."""
+    units = {one.result.design.files_in for one in variants if one.refusal is None}
+    return min(units, key=UNITS.index)
+
+
 def rows(variants: Sequence[Variant], *, every: bool = False) -> tuple[Row, ...]:
     """Return the table of variants.
 
@@ -60,8 +66,7 @@ def rows(variants: Sequence[Variant], *, every: bool = False) -> tuple[Row, ...]
     results = [one.result for one in variants if one.refusal is None]
     if not results:
         return ()
-    units = {one.design.files_in for one in results}
-    told_of = [told(one.facts, min(units, key=UNITS.index)) for one in results]
+    told_of = [told(one.facts, units_of(variants)) for one in results]
     columns = [
         {fact.name: fact for fact in (one.quantities() if every else one.leading())}
         for one in told_of

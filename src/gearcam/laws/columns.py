@@ -146,8 +146,8 @@ class CsvRows(ShortRepr):
         if len(head) == 1:
             return f"{fault}; commas, semicolons or tabs separate them"
         fault = f"{fault}: none is {' or '.join(missing)}" if missing else fault
-        units = {f"_{unit}" for name in missing for unit in like(_unit(name))}
-        return f"{fault}; units that are read: {', '.join(sorted(units))}" if units else fault
+        units = {unit for name in missing for unit in like(_unit(name))}
+        return f"{fault}; names may end in {', '.join(sorted(units))}" if units else fault
 
 
 def _unit(name: str) -> str:

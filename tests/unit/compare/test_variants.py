@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -304,3 +305,19 @@ def test_a_fact_of_variants_has_one_unit_and_equal_decimals() -> None:
     assert told(5.0, 3.25, text="some") == ["some mm/s2", "some mm/s2"]
     # what breaks its limit looks unlike it, with more digits
     assert told(2.0000001, 5.25, at_most=2.0)[0] == "2.0000001 mm/s2"
+
+
+def test_charts_are_in_inches_if_all_designs_are() -> None:
+    base = gearcam.load(PROFILES / "tappet.toml")
+    results = [gearcam.build(base.with_({"output.units": one})) for one in ("inch", "inch", "mm")]
+    variants = [
+        Variant(label=f"{k}", result=one, scene=one.scene()) for k, one in enumerate(results)
+    ]
+    labels = [
+        " ".join(one["y"] for one in document(chosen, title="t")["charts"])
+        for chosen in (variants[:2], variants[1:])
+    ]
+    assert re.search(r", in\b.*, 1/in\b", labels[0])
+    assert not re.search(r"[mu]m\b|1/m", labels[0])
+    assert not re.search(r"\bin\b", labels[1])
+    assert rows(variants[:2])

@@ -238,6 +238,7 @@ def test_both_units_of_a_quotient_are_in_inches(
     for found, wanted in ((name_in(name), named), (unit_in(unit), united)):
         assert found == (wanted, pytest.approx(factor, rel=1e-15))
     assert name_in("a_deg_per_mm") == ("a_deg_per_in", 25.4)
+    assert unit_in("1/mm") == ("1/in", 25.4)
     assert unit_in("um/mm") == ("in/in", pytest.approx(1e-3))
     assert key_mm("a_in_per_in") == "a_mm_per_mm"
 
