@@ -7,6 +7,7 @@ a remedy if neither the design nor one of its files is refused and no error is l
 
 from __future__ import annotations
 
+import re
 import time
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
@@ -230,6 +231,18 @@ def demand_files(result: Result) -> None:
     for kind in result.design.output.files:
         if kind in demands:
             demands[kind](result)
+
+
+def _in_lists(changes: Changes, document: Mapping[str, Any]) -> Changes:
+    """Return `changes` of all items of a list in a `document` as one of the list."""
+    items: dict[str, list[Any]] = {}
+    for key in sorted(changes):
+        if found := re.fullmatch(r"([^\[]+)\[\d\]", key):
+            items.setdefault(found[1], []).append(changes[key])
+    lists = {
+        key: of for key, of in items.items() if len(of) == len(value_at(document, key_mm(key)))
+    }
+    return together(changes, lists)
 
 
 class Advice:
@@ -465,12 +478,14 @@ class Search:
             self.tried |= dict.fromkeys(other.tried)
             design = self.result.design
             for remedy in other.found:
-                both = together(changes, remedy.changes)
+                document = document_of(remedy.design)
+                both = _in_lists(together(changes, remedy.changes), document)
+                less = _in_lists(together(changes, remedy.less), document)
                 self.found.append(
                     replace(
                         remedy,
                         changes=both,
-                        less=together(changes, remedy.less) if remedy.less else {},
+                        less=less if remedy.less else {},
                         moves=remedy.moves or self.advice.moves(changes_mm(changes), design),
                         resized=remedy.resized or self.advice.resized(changes_mm(changes), design),
                         design=design.with_(both),

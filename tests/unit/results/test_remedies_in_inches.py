@@ -14,6 +14,7 @@ from gearcam.base.errors import InfeasibleError
 from gearcam.base.inches import customary, told
 from gearcam.cli import main
 from gearcam.designs.writing import toml_text
+from helpers_pairs import PROFILES
 from helpers_remedies import ERRORS, REFUSED, followed
 from helpers_sampling import chosen
 
@@ -97,3 +98,15 @@ def test_findings_are_told_in_inches(
     printed = capsys.readouterr().out
     assert "With cam.prime_radius_in = 2.0759715 it keeps all limits" in " ".join(printed.split())
     assert "at most 0.0003937 in" in printed
+
+
+@pytest.mark.parametrize("units", ["mm", "inch"])
+def test_changes_of_a_whole_list_can_be_copied_as_one(units: str) -> None:
+    pair = gearcam.load(PROFILES / "inch_pair.toml").with_({"output.files": ["inspection"]})
+    wide = pair.with_({"output.pin_diameter_in": 0.9}).with_({"units": units})
+    (remedy, *_) = gearcam.remedies(gearcam.build(wide)).found
+    (key, value), *others = tomllib.loads(f"{remedy.text}").get("output", {}).items()
+    assert not others
+    assert key == ("pin_diameter_in" if units == "inch" else "pin_diameter_mm")
+    assert len(value) == 2
+    assert remedy.design == wide.with_(remedy.changes)
