@@ -15,6 +15,7 @@ import numpy as np
 from gearcam.base.errors import DesignError, Problem
 from gearcam.base.facts import Fact
 from gearcam.base.findings import Finding, run_checks
+from gearcam.base.inches import unit_in
 from gearcam.base.numerals import FEW, formatted
 from gearcam.cams.checks import FittedMotion
 from gearcam.cams.spec import FITTED
@@ -353,7 +354,9 @@ def fit(
     InfeasibleError
         If no phases can be found.
     """
-    found = fit_lift(theta, lift, wall.follower.lift_unit, error or 0.0)
+    scale, unit = wall.follower.lift_unit
+    unit, factor = unit_in(unit) if result.design.units == "inch" else (unit, 1.0)
+    found = fit_lift(theta, lift, (scale * factor, unit), error or 0.0)
     name = Path(source).name if isinstance(source, str | os.PathLike) else "points"
     return FittedDesign(
         result=result, wall=wall, fitted=found, of_profile=error is not None, source=str(name)

@@ -45,6 +45,13 @@ def loaded(text: str) -> CamDesign:
     return design
 
 
+def test_a_lift_in_inches_is_round_in_inches(tmp_path: Path) -> None:
+    file = written(tmp_path / "lift.csv", double_dwell(0.3125, 8e-5), "theta_deg,lift_in")
+    result = gearcam.build(gearcam.load(PLATE).with_({"units": "inch"}))
+    fitted = loaded(result.follow(file, fit=True).files["fitted.toml"].decode())
+    assert fitted.to_dict()["motion"][0]["lift_in"] == pytest.approx(0.3125, rel=1e-14)
+
+
 @pytest.mark.parametrize("head", few(["theta_deg,lift_mm", "angle_deg,lift_mm"]))
 def test_a_lift_becomes_a_design_that_builds(head: str, tmp_path: Path) -> None:
     file = written(tmp_path / "lift.csv", double_dwell(8.0), head)
