@@ -18,6 +18,7 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import DesignError, Problem
+from gearcam.base.inches import key_mm
 from gearcam.base.two_names import key_of
 from gearcam.designs.design import Design, document_of, own_document, value_at
 from gearcam.designs.kind import KINDS
@@ -132,6 +133,12 @@ class Plan(ShortRepr):
         Values that are allowed together are enough, as one may need another: a centre distance
         instead of a module. Otherwise some value of each key has to be allowed alone.
         """
+        spelt: dict[str, str] = {}
+        for axis in self.axes:
+            other = spelt.setdefault(key_mm(axis.key), axis.key)
+            if other != axis.key:
+                message = f"is given beside {other}"
+                raise DesignError.of(message, key=axis.key, allowed="one of them")
         together = self._refusal(self.axes)
         if together is not None and any(self._refusal([axis]) for axis in self.axes):
             raise together

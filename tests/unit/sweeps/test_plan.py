@@ -50,6 +50,12 @@ def test_a_latin_hypercube_has_one_sample_in_each_part() -> None:
         assert parts.tolist() == list(range(40))
 
 
+def test_a_length_is_varied_in_inches_or_in_mm() -> None:
+    axes = axes_of({"pair.face_width_in": "1,2", "pair.face_width_mm": "20,30"})
+    with pytest.raises(DesignError, match=r"_mm: is given beside pair\.face_width_in"):
+        Plan(base=BASE.with_({"units": "inch"}), axes=axes)
+
+
 def test_a_range_of_whole_numbers_is_sampled_in_whole_numbers() -> None:
     one = plan({"pair.teeth[0]": "20:30"}, sampling="random", samples=30)
     values = [one.values(k)["pair.teeth[0]"] for k in range(30)]
