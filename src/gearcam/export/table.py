@@ -119,6 +119,11 @@ def motion_bytes(table: Mapping[str, ArrayLike]) -> bytes:
     ----------
     table : mapping of str to (n,) array
         Columns of `motion` of a cam.
+
+    Returns
+    -------
+    bytes
+        The file (see `table_bytes`).
     """
     full = dict[str, str](zip(("s", "ds", "d2s", "d3s"), [*table][1:5], strict=True))
     short = {name: one for one, name in full.items()}
