@@ -225,8 +225,8 @@ def test_the_sheet_of_a_ring_tells_its_outside_and_its_teeth(made: GearPairResul
     reach = np.hypot(*made.gear2.outline.T)
     assert "Ø130" in words
     for radius, which in ((reach.max(), "max"), (reach.min(), "min")):
-        (told,) = [word for word in words if word.startswith("R") and word.endswith(which)]
-        assert float(told[1:].split()[0]) == pytest.approx(radius, abs=2e-3)
+        (told,) = [word for word in words if word.startswith("(R") and word.endswith(f"{which})")]
+        assert float(told[2:].split()[0]) == pytest.approx(radius, abs=2e-3)
     assert any(word.startswith("5 x Ø3") for word in words)
 
 
