@@ -329,6 +329,7 @@ def test_every_row_of_a_sheet_is_a_fact_of_some_design(monkeypatch: pytest.Monke
         },
         "feeder": {},
         "ellipse": {"output.files": ["drawing-svg"]},  # with what is measured
+        "rounded_square": {"output.files": ["drawing-svg"]},  # with eight spans
         "lathe_slide": {"blank.clearance_mm": 0.01},
         "plate_cam_oscillating": {"blank.density_kg_m3": 7850.0, "blank.clearance_mm": 0.01},
         "plate_cam_offset_roller": {},

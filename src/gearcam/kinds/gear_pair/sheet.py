@@ -44,7 +44,7 @@ _GEAR_ROWS: Final = (
     "density_kg_m3", "mass.mass_kg", "mass.centroid_mm", "mass.unbalance_g_mm",
     "measuring.pin_diameter_mm", "measuring.over_pins_mm", "measuring.chord_mm",
     "measuring.chord_depth_mm", "measuring.constant_chord_mm", "measuring.constant_chord_depth_mm",
-    *(f"measuring.spans.{number}.span_mm" for number in range(4)),
+    *(f"measuring.spans.{number}.span_mm" for number in range(8)),
 )  # fmt: skip
 """Facts in the tables of drawings."""
 
