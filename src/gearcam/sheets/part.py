@@ -108,10 +108,11 @@ def _notes(wheel: Wheel) -> list[str]:
     part, chamfer = wheel.part, wheel.part.chamfer
     about = " R, X, Y from the axis; angles from x, to the right." if wheel.turns else ""
     if not wheel.turns and holes_of(part):
-        about = f" X, Y from the {'cross' if wheel.placed else 'lower left corner'}."
+        side = "left" if wheel.origin.real == wheel.low.real else "right"
+        about = f" X, Y from the {'cross' if wheel.placed else f'lower {side} corner'}."
     return [
         *([f"Chamfer {decimal(chamfer)} x 45 deg on both faces."] if chamfer else []),
-        *(["Holes go right through."] if part.openings else []),
+        *(["Holes go right through."] if holes_of(part) else []),
         f"All sizes are finished sizes.{about}",
         wheel.unrolled.note
         if wheel.unrolled

@@ -111,8 +111,12 @@ class Wheel:
 
     @property
     def origin(self) -> complex:
-        """From where hole positions count, mm: axis, cross, or the lower left corner."""
-        return 0j if self.turns or self.placed else self.low
+        """From where hole positions count, mm: axis, cross, or a lower corner that is there."""
+        if self.turns or self.placed:
+            return 0j
+        right = complex(self.high.real, self.low.imag)
+        cut = float(np.abs(self.points - self.low).min()) > SAME  # by teeth, as of a rack
+        return right if cut else self.low
 
     @cached_property
     def bore(self) -> Opening | None:
