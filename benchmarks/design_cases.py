@@ -37,7 +37,7 @@ def of_cams(tries: int = 9) -> Result:
 
 
 def of_measures(tries: int = 9) -> Result:
-    """(zx) Over pins, chords and spans of both wheels of a pair, whose outlines are finished."""
+    """(zy) Over pins, chords and spans of both wheels of a pair, whose outlines are finished."""
     gears = gearcam.build(gearcam.load(PROFILES / "nail_machine_two_phase.toml")).gears
 
     def measure() -> None:
@@ -48,7 +48,7 @@ def of_measures(tries: int = 9) -> Result:
     rows = in_turns({"both wheels of nail_machine_two_phase": measure}, tries)
     (found,) = (row.median for row in rows)
     return Result(
-        title="(zx) Over pins, chords and spans of a pair",
+        title="(zy) Over pins, chords and spans of a pair",
         asked=f"at most {MEASURED} s",
         found=f"{found:.3f} s",
         passed=found <= MEASURED,

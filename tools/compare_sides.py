@@ -17,6 +17,9 @@ from typing import Any, Final, NoReturn
 
 ROOT: Final = Path(__file__).resolve().parents[1]
 WORKER: Final = Path(__file__).with_name("compare_worker.py")
+SAFE: Final[dict[str, Any]] = {"filter": "data"} if hasattr(tarfile, "data_filter") else {}
+"""How archives are unpacked: Python knows filters from 3.11.4 on."""
+
 GALLERY: Final = "profiles"
 
 
@@ -113,5 +116,5 @@ def tree_of(base: str) -> Iterator[Path]:
         complain(f"{base}: {done.stderr.decode().strip()}")
     with tempfile.TemporaryDirectory(prefix="base-") as folder:
         with tarfile.open(fileobj=BytesIO(done.stdout)) as archive:
-            archive.extractall(folder, filter="data")
+            archive.extractall(folder, **SAFE)
         yield Path(folder).resolve()

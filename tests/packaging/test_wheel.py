@@ -19,6 +19,7 @@ import pytest
 from ezdxf import filemanagement
 
 from arch import rules
+from compare_sides import SAFE
 from gearcam import __version__
 
 ROOT = rules.ROOT
@@ -54,7 +55,7 @@ def archives(tmp_path_factory: pytest.TempPathFactory) -> Archives:
     run(*hatchling, "sdist", cwd=ROOT)
     (sdist,) = folder.glob("*.tar.gz")
     with tarfile.open(sdist) as held:
-        held.extractall(folder, filter="data")
+        held.extractall(folder, **SAFE)
         names = [member.name for member in held if member.isfile()]
     top = folder / f"gearcam-{__version__}"
     run(*hatchling, "wheel", cwd=top)
