@@ -8,8 +8,8 @@ stiffnesses in N/mm, masses in kg. The table ``[sweep]`` names keys, whose value
 units.
 
 This layer is around all others: `metric` makes of such a document one in mm when it is read, and
-`customary` one in inches when it is written; `told` translates what people are told: texts,
-refusals, adjustments, findings and facts. Writers of files ask for the `FileUnit` of a build.
+`customary` one in inches when it is written; `told` converts texts, refusals, adjustments, findings
+and facts for their readers. Writers of files ask for the `FileUnit` of a build.
 
 An inch is 25.4 mm exactly. A length that is read is rounded to 15 digits, so that 3 in is 76.2 mm,
 and what was written in 13 digits is written again as it was.
@@ -245,7 +245,7 @@ def _few(value: float) -> str:
 
 
 def told(thing: _T, units: str) -> _T:
-    """Return what people are told of a design in some `units`.
+    """Return texts, refusals, adjustments, findings or facts in the `units` of a design.
 
     Parameters
     ----------
@@ -266,7 +266,7 @@ def told(thing: _T, units: str) -> _T:
 
 @contextmanager
 def telling(units: str) -> Iterator[None]:
-    """Return a context whose refusals are told in the units of a design."""
+    """Return a context whose refusals have the units of a design."""
     try:
         yield
     except InfeasibleError as error:

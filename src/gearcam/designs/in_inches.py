@@ -1,4 +1,4 @@
-"""Faults of designs in inches: what is found in mm is told in the words of the file."""
+"""Faults of designs in inches: found in mm, with the keys and the values of the file."""
 
 from __future__ import annotations
 

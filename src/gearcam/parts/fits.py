@@ -123,7 +123,7 @@ class FitSize(float):
         """Return the size of a `text`."""
         found = _SIZE.fullmatch(str(text))
         if found is None:
-            what = f"{text!r} is no size with a tolerance class"
+            what = f"{text!r} is not a size with a tolerance class"
             raise DesignError.of(what, allowed='such as "25 H7"')
         made = super().__new__(cls, found[1])
         made.tolerance_class = f"{found[2]}{int(found[3])}"

@@ -178,7 +178,7 @@ class Wheel:
             turned = replace(cast("Opening", self.bore), shape=placed(self.keyed, turn))
             others = (turned if one is self.bore else one for one in part.openings)
             part = replace(part, openings=tuple(others))
-        # chamfers are told in words; a set screw is turned into the plane
+        # a note states chamfers; a set screw is turned into the plane
         pockets = [one for one in part.pockets if not isinstance(one, Bevel | ScrewHole)]
         return Section(layers=part.layers, pockets=pockets, x=self.plane, tolerance=part.tolerance)
 

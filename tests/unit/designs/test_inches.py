@@ -1,4 +1,4 @@
-"""Design files in inches: what they say, what they are told, and what is written of them."""
+"""Design files in inches: reading, messages and writing."""
 
 from __future__ import annotations
 

@@ -105,9 +105,9 @@ def test_a_size_with_a_class_is_a_number() -> None:
 @pytest.mark.parametrize(
     ("text", "words", "allowed"),
     [
-        ("H7", "is no size with a tolerance class", '"25 H7"'),
-        ("25", "is no size with a tolerance class", '"25 H7"'),
-        ("25,5 H7", "is no size with a tolerance class", '"25 H7"'),
+        ("H7", "is not a size with a tolerance class", '"25 H7"'),
+        ("25", "is not a size with a tolerance class", '"25 H7"'),
+        ("25,5 H7", "is not a size with a tolerance class", '"25 H7"'),
         ("25 H15", "limits of H15 are not known", "H5 to H14"),
         ("25 K9", "limits of K9 are not known", "K5 to K8"),
         ("25 ZA7", "the letter ZA is not known", "D, E, F"),
