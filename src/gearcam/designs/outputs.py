@@ -113,6 +113,11 @@ class OutputSpec(ShortRepr):
     )
     process: str | None = process_param()
 
+    @property
+    def marking(self) -> str:
+        """The process by which arrows and marks are made."""
+        return self.process or "milling"
+
     rules = (
         excluded(
             "dxf_version", "R12", dxf_curves="splines",

@@ -218,7 +218,7 @@ class GriddedCam(LoadedCam, Result):
             name="the cam",
             rim=self.rims[1] - radius or 0.2 * radius,
             within="the floor of the groove",
-            process=self.design.output.process or "milling",
+            process=self.design.output.marking,
         )
         edge = Circle(center=0j, diameter=2.0 * radius)
         with self.stage("blank"):

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
 from itertools import product
 from typing import TYPE_CHECKING, Any, Final
 
@@ -19,7 +18,7 @@ import numpy as np
 
 from gearcam.base.adjustments import Adjustment
 from gearcam.numeric.arrays import Plane, as_pairs
-from gearcam.parts.body import Arrow, Layer, Part
+from gearcam.parts.body import Arrow, Part
 from gearcam.parts.openings import Workpiece
 from gearcam.parts.shapes import Loop
 
@@ -59,8 +58,8 @@ def arrow(part: Part, work: Workpiece, way: complex, core: float) -> Arrow:
     work : Workpiece
         With its process.
     way : complex
-        How it moves: 1 counter-clockwise about its axis, -1 clockwise; for what slides 2 times a
-        unit vector.
+        How it moves: 1 counter-clockwise about its axis, -1 clockwise; of what slides the
+        direction, a unit vector.
     core : float, mm
         Radius within which bore and hub lie.
 
@@ -76,17 +75,17 @@ def arrow(part: Part, work: Workpiece, way: complex, core: float) -> Arrow:
     from shapely import Polygon, prepare, union_all
 
     line, depth = LINES[work.process]
-    top = Layer(edge=part.steps[-1].edge, low=0.0, high=1.0, openings=part.steps[-1].openings)
-    taken = [Layer(edge=mark.edge, low=0.0, high=1.0) for mark in part.marks]
-    taken += [one for one in part.recesses if one.front]
-    taken += [replace(one, openings=()) for one in part.bosses if one.low > 0.0]
+    covered = [mark.edge for mark in part.marks]
+    covered += [boss.edge for boss in part.bosses if boss.low > 0.0]
+    edges = [part.steps[-1].edges, *((edge,) for edge in covered)]
+    edges += [one.edges for one in part.recesses if one.front]
     whole, *used = (
-        Polygon(edge, holes)
-        for edge, *holes in ([work.points(edge) for edge in one.edges] for one in (top, *taken))
+        Polygon(outer, holes)
+        for outer, *holes in ([work.points(edge) for edge in one] for one in edges)
     )
     free: Any = whole.difference(union_all(used)).buffer(-line, quad_segs=4)
     prepare(free)
-    shapes = _straight if abs(way) > 1.5 else _arcs
+    shapes = _arcs if part.turns else _straight
     for shape in shapes(free, way, line, core):
         if free.contains(Polygon(as_pairs(shape.polyline(0.1 * line)))):
             return Arrow(edge=shape, depth=min(depth, DEPTH_PART * part.width))
@@ -132,15 +131,14 @@ def _straight(free: Polygon, way: complex, line: float, _: float) -> Iterator[Lo
     if free.is_empty:
         return
     low, high = complex(*free.bounds[:2]), complex(*free.bounds[2:])
-    unit, middle = way / abs(way), 0.5 * (low + high)
-    size = high - low
-    along = abs((size * unit.conjugate()).real)
+    middle, size = 0.5 * (low + high), high - low
+    along = abs((size * way.conjugate()).real)
     steps = np.linspace(-0.5, 0.5, _PLACES)
     steps = steps[np.argsort(np.abs(steps), kind="stable")].tolist()
     for share in _LENGTHS:
         if share * along < 2.0 * _HEAD[1] * line:
             continue
-        edge = unit * _corners(share * along, line)
+        edge = way * _corners(share * along, line)
         for x, y in product(steps, steps):
             place = middle + complex(x * size.real, y * size.imag)
             yield Loop(points=place + edge, bulges=np.zeros(len(edge)))

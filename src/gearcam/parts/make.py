@@ -211,31 +211,25 @@ def _bevel(
     from gearcam.parts.rolled import too_far
 
     whole = edge if isinstance(edge, Contour) else edge.contour(part.tolerance)
-
-    low, high = (layer.high - size, layer.high) if up else (layer.low, layer.low + size)
     way = 1.0 if hollow else -1.0
-    made: list[Bevel] = []
 
-    def outer(by: float) -> Contour:
-        """Return the edge in the face, where no detail of the edge is lost."""
-        face, middle = moved(whole, way * by), moved(whole, 0.5 * way * by)
-        ends = (high - by, high) if up else (low, low + by)
-        one = Bevel(
+    def bevel(by: float) -> Bevel:
+        """Return the chamfer of a size that loses no detail of the edge."""
+        low, high = (layer.high - by, layer.high) if up else (layer.low, layer.low + by)
+        made = Bevel(
             edge=edge,
-            middle=middle,
-            face=face,
-            low=ends[0],
-            high=ends[1],
+            middle=moved(whole, 0.5 * way * by),
+            face=moved(whole, way * by),
+            low=low,
+            high=high,
             up=up,
             hollow=hollow,
         )
-        if one.uneven > _UNEVEN * by * whole.length:
+        if made.uneven > _UNEVEN * by * whole.length:
             raise too_far(whole, by)
-        made.append(one)
-        return face
+        return made
 
-    sized(outer, size, f"{work.name}, blank.chamfer_mm", "chamfer")
-    return made[-1]
+    return sized(bevel, size, f"{work.name}, blank.chamfer_mm", "chamfer")
 
 
 def finished(contour: Contour, blank: ShaftBlank, work: Workpiece) -> Contour:

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 import numpy as np
 
@@ -24,6 +24,8 @@ from gearcam.numeric.arrays import Mask, Plane, as_complex, as_pairs
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.hermite import on_cubics
 from gearcam.parts.rolled import arc_run, roll, too_far
+
+_Made = TypeVar("_Made")
 
 _DEPTH: Final = 2.0
 """A point is lost if the outline is nearer than the distance by this many chord errors."""
@@ -137,13 +139,13 @@ def rounded(contour: Contour, radius: float) -> Contour:
     return _contour(runs, contour, -radius)
 
 
-def sized(make: Callable[[float], Contour], size: float, where: str, what: str) -> Contour:
-    """Return the contour that `make` gives for a size.
+def sized(make: Callable[[float], _Made], size: float, where: str, what: str) -> _Made:
+    """Return what `make` gives for a size.
 
     Parameters
     ----------
     make : callable
-        ``make(size)`` returns `moved` or `rounded` of some contour.
+        ``make(size)`` returns `moved` or `rounded` of some contour, or what is made of them.
     size : float, mm
         Given size.
     where : str
@@ -153,7 +155,7 @@ def sized(make: Callable[[float], Contour], size: float, where: str, what: str) 
 
     Returns
     -------
-    Contour
+    Contour, or what else `make` gives
 
     Raises
     ------

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -77,23 +76,27 @@ def _part(gears: list[Gear], design: GearPairDesign) -> Part:
     gear = gears[0]
     if gear.ring:
         return _ring(gears, design)
-    lobes, rack = gear.pair.law.lobes, gear.toothing.track.slides
-    travel = None
-    if not lobes.closed and not rack:
-        travel = lobes.period if gear.wheel == 1 else lobes.advance
-    blank, wheel = design.blank.wheel(gear.wheel), gear.wheel
-    work = Workpiece(
-        name=f"wheel {wheel}",
-        rim=RIM * gear.pair.module,
-        travel=travel,
-        wheel=wheel,
-        process=design.output.process or "milling",
-    )
+    blank, work = design.blank.wheel(gear.wheel), _workpiece(gear, design)
     contours = [one.profile.contour for one in gears]
     width, way = design.pair.face_width, _way(gear)
-    if rack:
-        return _rack(gear, contours, design, replace(work, bar=True), way)
+    if work.bar:
+        return _rack(gear, contours, design, work, way)
     return make_part(gear.name, contours, width, blank, work, lambda: _mark(gear, design), way=way)
+
+
+def _workpiece(gear: Gear, design: GearPairDesign) -> Workpiece:
+    """Return the workpiece of a wheel, a ring or a rack."""
+    lobes, rack, travel = gear.pair.law.lobes, gear.toothing.track.slides, None
+    if not (lobes.closed or rack or gear.ring):
+        travel = lobes.period if gear.wheel == 1 else lobes.advance
+    return Workpiece(
+        name=f"wheel {gear.wheel}",
+        rim=RIM * gear.pair.module,
+        travel=travel,
+        wheel=gear.wheel,
+        process=design.output.marking,
+        bar=rack,
+    )
 
 
 def _rack(
@@ -123,7 +126,7 @@ def _way(gear: Gear) -> complex:
     before, after = (gear.pair.rolling.poses(phi)[gear.wheel - 1] for phi in (0.0, _SLIGHT))
     if gear.toothing.track.slides:
         shift = complex(after.shift) - complex(before.shift)
-        return 2.0 * shift / abs(shift)
+        return shift / abs(shift)
     return math.copysign(1.0, float(after.turn) - float(before.turn))
 
 
@@ -139,8 +142,7 @@ def _ring(gears: list[Gear], design: GearPairDesign) -> Part:
         circle = Circle(center=0j, diameter=2.0 * (roots + rim))
         contours = [circle if around else outside(gear.profile, rim)] * len(gears)
     inner = toothed if gear.hollow else []
-    process = design.output.process or "milling"
-    work = Workpiece(name="wheel 2", rim=RIM * gear.pair.module, wheel=2, process=process)
+    work = _workpiece(gear, design)
     wall = limit_of(PARTS_KIND, "thin-wall", design.limits)
 
     def larger(radius: float) -> dict[str, object]:

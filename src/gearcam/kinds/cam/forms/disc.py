@@ -40,7 +40,7 @@ def workpiece(form: Form[Any, Any, Any], name: str, within: str = "the outline")
     """Return the workpiece of a `form`: its `name`, and the edge that openings stay `within`."""
     from gearcam.parts.openings import Workpiece
 
-    rim, process = _RIM_PART * form.given.thickness, form.output.process or "milling"
+    rim, process = _RIM_PART * form.given.thickness, form.output.marking
     return Workpiece(name=name, rim=rim, within=within, process=process)
 
 

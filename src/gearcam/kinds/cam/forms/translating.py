@@ -318,7 +318,7 @@ class Translating(Form[TranslatingCam, PlateSpec, PlateFollower]):
             turns=False,
         )
         mark = partial(marker, cam.lower, thickness, work)
-        return (marked(part, self.blank, work, mark, way=2.0),)
+        return (marked(part, self.blank, work, mark),)
 
     def _cut(self, cam: TranslatingCam) -> TranslatingCam:
         """Return the finished cam: a single wall is moved back by the clearance of the blank."""
