@@ -162,3 +162,17 @@ def test_a_thin_wall_and_a_wide_hub_of_a_drum_are_told() -> None:
     assert "floor of the groove" in thin.message
     with pytest.raises(gc.InfeasibleError, match="the hub reaches the floor of the groove"):
         _ = gc.build(design.with_({"blank.hub_diameter_mm": 75})).findings
+
+
+@pytest.mark.parametrize("height", [4, 7])
+def test_a_bar_that_is_too_low_gets_a_height_for_its_holes(height: float) -> None:
+    design = gc.load(PROFILES / "gate_rack.toml").with_(
+        {"bar.height_mm": height, "output.files": ["csv"]}
+    )
+    with pytest.raises(gc.InfeasibleError):
+        _ = gc.build(design).parts
+    (found,) = gc.remedies(gc.build(design)).found
+    rack = gc.build(design.with_(found.changes)).parts[1]
+    assert rack.size[0] == pytest.approx(found.changes["bar.height_mm"])
+    assert height < rack.size[0] < 20.0
+    assert len(rack.openings) == 4

@@ -36,6 +36,9 @@ _MORE = 1.001
 """Factor, clear of rounding, by which a named remedy exceeds the least rim or diameter, or stays
 below the largest travel."""
 
+_HIGHER = 4.0
+"""Largest height of a bar that is tried, over the least."""
+
 _HUB = 0.6
 """Radius of the hub over the smallest root radius."""
 
@@ -189,7 +192,10 @@ def _back(toothed: Plane, inner: Plane, depth: float, height: float | None) -> f
     least = max(float(toothed.real.max()), float(inner.real.max())) - tips
     if height <= least:
         what = "the bar of the rack leaves its end faces, a module deep, no metal"
-        raise beyond_limit(what, "bar.height_mm", height, least, near=_MORE * least, unit="mm")
+        key, near = "bar.height_mm", _MORE * least
+        # its holes may need more
+        higher = (Adjustment(near={key: near}, far={key: _HIGHER * least}),)
+        raise beyond_limit(what, key, height, least, near=near, adjustments=higher, unit="mm")
     return tips + height
 
 

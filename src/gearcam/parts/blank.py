@@ -353,8 +353,15 @@ class WheelBlank(ShaftBlank):
 
 @dataclass(frozen=True, kw_only=True)
 class RowBlank(ShortRepr, Fitted):
-    """A row of mounting holes in what slides."""
+    """A row of mounting holes in what slides.
 
+    Parameters
+    ----------
+    height : float or None, mm
+        Of what they are in; each has its own.
+    """
+
+    height: float | None = fixed(None)
     bolts: int = _count(doc="number of mounting holes in a row", le=100)
     bolt_diameter: float = _length(doc="diameter of each mounting hole", fit=True)
     bolt_spacing: float | None = positive_length(
@@ -371,8 +378,12 @@ class RowBlank(ShortRepr, Fitted):
 
     @property
     def places(self) -> dict[str, float]:
-        """Keys that place the row, with their values, mm."""
-        sizes = {"bolt_spacing_mm": self.bolt_spacing, "bolt_height_mm": self.bolt_height}
+        """Keys that place the row, and that of its room, with their values, mm."""
+        sizes = {
+            "bolt_spacing_mm": self.bolt_spacing,
+            "bolt_height_mm": self.bolt_height,
+            "height_mm": self.height,
+        }
         return {key: size for key, size in sizes.items() if size is not None}
 
     def problems(self) -> Iterator[Breach]:

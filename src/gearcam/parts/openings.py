@@ -110,7 +110,7 @@ class Workpiece:
 
     def key(self, name: str) -> str:
         """Return the dotted key of its value of key `name` in ``[blank]``, or of its bar."""
-        if self.bar and name.startswith("bolt"):
+        if self.bar and name.startswith(("bolt", "height")):
             return f"bar.{name}"
         return f"blank.{name}" if self.wheel is None else f"blank.{name}[{self.wheel - 1}]"
 

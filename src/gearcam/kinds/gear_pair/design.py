@@ -101,7 +101,7 @@ class BarSpec(Bar, RowBlank):
     --------
     >>> import gearcam as gc
     >>> gc.BarSpec(height=20.0, ends="gap", bolts=1, bolt_diameter=5.0, bolt_height=6.0)
-    BarSpec(bolts=1, bolt_diameter=5, bolt_height=6, height=20, ends='gap')
+    BarSpec(height=20, bolts=1, bolt_diameter=5, bolt_height=6, ends='gap')
     """
 
 

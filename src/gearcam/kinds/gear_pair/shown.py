@@ -396,7 +396,7 @@ _OF_PARTS: Final = {
     elsewhere. Needs `pip install "gearcam[step]"`.""",
     **dict.fromkeys(DRAWINGS, _SHEETS),
     "print-pdf": """
-    Files: gear1_print.pdf, gear2_print.pdf.
+    Files: gear1_print.pdf, gear2_print.pdf; of stepped wheels gear1_step1_print.pdf and so on.
 
     Outlines at full size on A4 pages, with cross marks where these overlap, to glue on plywood.""",
 }
