@@ -438,24 +438,32 @@ class FileUnit:
         Its size.
     dxf : int
         Its ``$INSUNITS`` in DXF.
+    decimals : int
+        Decimals of sizes on drawings, at most: micrometres, or ten-thousandths of an inch.
     """
 
     name: str
     size: float
     dxf: int
+    decimals: int
+
+    @property
+    def units(self) -> str:
+        """Its name in a design."""
+        return UNITS[self.size != 1.0]
 
     def column(self, name: str) -> tuple[str, float]:
         """Return the name of a column of lengths in the unit, and what its numbers are times."""
         return name_in(name) if self.size != 1.0 else (name, 1.0)
 
-    def told(self, text: str) -> str:
-        """Return a text with its lengths in the unit."""
-        return told(text, UNITS[self.size != 1.0])
+    def told(self, thing: _T) -> _T:
+        """Return a text, or facts, with lengths in the unit (see `told`)."""
+        return told(thing, self.units)
 
 
-MILLIMETRES: Final = FileUnit("mm", 1.0, 4)
+MILLIMETRES: Final = FileUnit("mm", 1.0, 4, 3)
 
-_FILES: Final = {"mm": MILLIMETRES, "inch": FileUnit("in", INCH, 1)}
+_FILES: Final = {"mm": MILLIMETRES, "inch": FileUnit("in", INCH, 1, 4)}
 _now: Final = ContextVar("unit of files", default=MILLIMETRES)
 
 

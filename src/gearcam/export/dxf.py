@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
-from gearcam.base.inches import MILLIMETRES, FileUnit, file_unit
+from gearcam.base.inches import FileUnit, file_unit
 from gearcam.base.numerals import formatted
 from gearcam.numeric.arcs import fit_closed
 from gearcam.numeric.arrays import Array, Plane, as_pairs
@@ -102,16 +102,11 @@ def dxf_bytes(drawing: Drawing, style: DxfStyle) -> bytes:
     bytes
         The file, UTF-8; the same for the same drawing.
     """
-    unit = file_unit()
-    text = document_text(style.version, lambda new: _fill(new, drawing, style), unit)
-    if style.version == "R12" and unit.size != 1.0:  # it has no unit, but comments
-        text = f"999\n{unit.told('lengths are in mm')}\n{text}"
+    text = document_text(style.version, lambda new: _fill(new, drawing, style), file_unit())
     return text.encode("utf-8")
 
 
-def document_text(
-    version: str, fill: Callable[[Document], None], unit: FileUnit = MILLIMETRES
-) -> str:
+def document_text(version: str, fill: Callable[[Document], None], unit: FileUnit) -> str:
     """Return the text of a DXF file.
 
     Parameters
@@ -140,7 +135,8 @@ def document_text(
             document.classes.add_class(kind)
         stream = io.StringIO()
         document.write(stream)
-    return stream.getvalue()
+    inches = version == "R12" and unit.size != 1.0  # it has no unit, but comments
+    return f"999\n{unit.told('lengths are in mm')}\n" * inches + stream.getvalue()
 
 
 def _scale(document: Document, factor: float) -> None:
@@ -151,7 +147,7 @@ def _scale(document: Document, factor: float) -> None:
     for entity in space:
         entity.transform(Matrix44.scale(factor))  # type: ignore[union-attr]
     space.reset_extents(*(factor * space.dxf.get(end) for end in ("extmin", "extmax")))
-    document.header["$LTSCALE"] = factor
+    document.header["$LTSCALE"] *= factor
 
 
 def _fill(document: Document, drawing: Drawing, style: DxfStyle) -> None:

@@ -1,4 +1,7 @@
-"""DXF of workshop drawings: the part in true millimetres, its sheet enlarged or reduced around it.
+"""DXF of workshop drawings: the part in its true size, the sheet enlarged or reduced around it.
+
+Lengths are in the unit of the sheet's texts, mm or inches, which ``$INSUNITS`` says, in R12 a
+comment.
 
 R2010 has dimension entities, whose text is that of every other format and whose points can be
 moved, and hatches; in R12 they are lines, solid arrow heads and texts. The front view has the
@@ -93,7 +96,7 @@ def sheet_dxf(sheet: Sheet, style: DxfStyle) -> bytes:
         for text in sheet.texts:
             _text(space, sheet, text, TEXT, old)
 
-    return dxf.document_text(style.version, fill).encode("utf-8")
+    return dxf.document_text(style.version, fill, sheet.units).encode("utf-8")
 
 
 def _prepare(document: Document, sheet: Sheet, old: bool) -> None:
@@ -117,11 +120,12 @@ def _prepare(document: Document, sheet: Sheet, old: bool) -> None:
     if old:
         return
     document.header["$LWDISPLAY"] = 1
-    made = document.dimstyles.new(STYLE)
+    made, lengths = document.dimstyles.new(STYLE), sheet.units
     for name, value in {
-        "dimscale": unit, "dimtxt": HEIGHT, "dimasz": ARROW, "dimgap": GAP, "dimexo": LEAST_GAP,
-        "dimexe": PAST, "dimdec": 3, "dimzin": 8, "dimdsep": ord("."), "dimtad": 1, "dimtih": 0,
-        "dimtoh": 0, "dimcen": 0.0, "dimtxsty": STYLE, "dimtmove": 1, "dimlunit": 2,
+        "dimscale": unit / lengths.size, "dimtxt": HEIGHT, "dimasz": ARROW, "dimgap": GAP,
+        "dimexo": LEAST_GAP, "dimexe": PAST, "dimdec": lengths.decimals, "dimzin": 8,
+        "dimdsep": ord("."), "dimtad": 1, "dimtih": 0, "dimtoh": 0, "dimcen": 0.0,
+        "dimtxsty": STYLE, "dimtmove": 1, "dimlunit": 2,
     }.items():  # fmt: skip
         made.set_dxf_attrib(name, value)
         document.header[f"${name.upper()}"] = value  # some programs read them only here
@@ -134,7 +138,7 @@ def _dimension(space: Any, sheet: Sheet, one: SheetDimension, block: str) -> Non
     made = {
         "layer": DIMENSION, "dimstyle": STYLE, "geometry": block, "text": one.label,
         "dimtype": _KINDS[one.kind] + 32 + 128, "text_midpoint": _place(middle), "defpoint": base,
-        "actual_measurement": one.value,
+        "actual_measurement": one.value / sheet.units.size,
     }  # fmt: skip
     if len(rest) == 2:
         turn = 90.0 if one.kind == "vertical" else 0.0

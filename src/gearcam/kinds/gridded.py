@@ -14,6 +14,7 @@ import numpy as np
 from gearcam.base.adjustments import text_of
 from gearcam.base.errors import ABOVE, InfeasibleError, beyond_limit
 from gearcam.base.findings import CHECKS, Finding, in_order, limit_of, run_checks
+from gearcam.base.inches import files_in
 from gearcam.base.numerals import formatted
 from gearcam.kinds.loaded_cam import LoadedCam
 from gearcam.kinds.shared import turn_in_steps
@@ -237,7 +238,8 @@ class GriddedCam(LoadedCam, Result):
     @cached_property
     def sheets(self) -> tuple[Sheet, ...]:
         """The workshop drawing."""
-        return self.kind.sheets(self)
+        with files_in(self.design.files_in):
+            return self.kind.sheets(self)
 
     @property
     def turned_bore(self) -> float:

@@ -22,7 +22,7 @@ from gearcam.pictures.drawings import Drawing, box, place
 from gearcam.sheets.paper import Heading, Values, sheet_rows
 from gearcam.sheets.part import part_sheet
 from gearcam.sheets.sections import mesh_loops
-from gearcam.sheets.sheet import Sheet
+from gearcam.sheets.sheet import Sheet, column
 from gearcam.sheets.wheel import Sense, Unrolled, check_runout
 
 _STEPS: Final = 360
@@ -41,7 +41,7 @@ def cam_sheet(
     radius: float,
     drawing: Drawing,
     rows: Sequence[str],
-    column: tuple[str, Callable[[Array], Array]],
+    tabled: tuple[str, str, Callable[[Array], Array]],
     texts: tuple[str, str],
 ) -> Sheet:
     """Return the sheet of a cam in space.
@@ -56,8 +56,8 @@ def cam_sheet(
         Its outside unrolled.
     rows : sequence of str
         Names of the facts in the table of data.
-    column : (str, callable)
-        What is tabled, and its values at cam angles, rad.
+    tabled : (str, str, callable)
+        What is tabled, its unit, and its values at cam angles, rad.
     texts : (str, str)
         What is written above the unrolled outside, and where its walls are given.
 
@@ -87,9 +87,10 @@ def cam_sheet(
     low, _ = box(drawing.features)
     unrolled = replace(drawing, features=place(drawing.features, Pose(0.0, -low)))
     theta = np.arange(0.0, 360.0, _TABLE)
-    name, values = column
-    tabled = zip(theta.tolist(), values(np.radians(theta)).tolist(), strict=True)
-    table = [(decimal(angle), decimal(value)) for angle, value in tabled]
+    name, own, values = tabled
+    unit, text = column(own)
+    pairs = zip(theta.tolist(), values(np.radians(theta)).tolist(), strict=True)
+    table = [(decimal(angle), text(value)) for angle, value in pairs]
     # the roller runs round a cam against its rotation
     theta_there = "0 to 360" if result.cam.clockwise else "360 to 0"
     title = f"{texts[0]}, azimuth 0 to 360 deg, theta {theta_there} deg"
@@ -98,6 +99,6 @@ def cam_sheet(
         sheet_rows(result.facts, rows),
         Heading(title=design.name, notes=design.drawing),
         turning=Sense(zero=0.0, clockwise=result.cam.clockwise),
-        values=Values(title=("theta, deg", name), rows=table),
+        values=Values(title=("theta, deg", f"{name}, {unit}"), rows=table),
         unrolled=Unrolled(loops=loops, drawing=unrolled, title=title, note=texts[1]),
     )

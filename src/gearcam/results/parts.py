@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 
+from gearcam.base.inches import files_in
 from gearcam.designs.outputs import DRAWINGS, MESHES
 from gearcam.results.kind import Files
 from gearcam.results.result import Result
@@ -156,16 +157,17 @@ class PartsResult(Result):
 
         facts = self.facts
         check_runout(self.design.drawing, self.parts)
-        return tuple(
-            part_sheet(
-                part,
-                sheet_rows(facts, self.rows_of(number)),
-                self.heading(number),
-                turning=self.turning(number),
-                values=self.values(number),
+        with files_in(self.design.files_in):
+            return tuple(
+                part_sheet(
+                    part,
+                    sheet_rows(facts, self.rows_of(number)),
+                    self.heading(number),
+                    turning=self.turning(number),
+                    values=self.values(number),
+                )
+                for number, part in enumerate(self.parts)
             )
-            for number, part in enumerate(self.parts)
-        )
 
     def turning(self, number: int) -> Sense | None:  # noqa: ARG002
         """Return how the part of a `number` from 0 turns, if its drawing shows it."""

@@ -22,7 +22,7 @@ from gearcam.pictures.drawings import SLOT
 from gearcam.sheets.board import OVERHANG, Board
 from gearcam.sheets.dimensions import diameter_text
 from gearcam.sheets.paper import Heading
-from gearcam.sheets.sheet import CENTERLINE, DIMENSION, fine
+from gearcam.sheets.sheet import CENTERLINE, DIMENSION, fine, length_text
 from gearcam.sheets.symbols import frame
 from gearcam.sheets.wheel import SAME, Sense, Wheel, fitted, holes_of
 
@@ -76,7 +76,7 @@ def callouts(board: Board, wheel: Wheel, side: float) -> None:
         edge = complex(side - part.ends[0] + part.screw.middle, up)
         board.label(edge, thread(part.screw))
     for mark in part.marks:
-        words = f"{diameter_text(mark.diameter)}, {decimal(mark.depth)} deep"
+        words = f"{diameter_text(mark.diameter)}, {length_text(mark.depth)} deep"
         board.callout(mark.edge, f"mark {words}", "label", row=("mark", words))
 
 
@@ -88,10 +88,10 @@ def _radii(board: Board, wheel: Wheel) -> None:
     for radius, word in ((float(reach.max()), "max"), (float(reach.min()), "min")):
         # the first of the points on an arc about the axis, not one that rounding chooses
         point = complex(teeth[np.argmax(np.abs(reach - radius) < SAME)])
-        circle, words = Circle(center=0j, diameter=2.0 * radius), f"(R{decimal(radius)} {word})"
+        circle, words = Circle(center=0j, diameter=2.0 * radius), f"(R{length_text(radius)} {word})"
         if not board.callout(circle, words, "radius", angles=np.array([cmath.phase(point)])):
             # a leader without direction to the axis
-            board.label(point, words, (f"{word}. radius from axis", decimal(radius)))
+            board.label(point, words, (f"{word}. radius from axis", length_text(radius)))
 
 
 def _holes(board: Board, part: Part, origin: complex) -> None:
@@ -115,7 +115,7 @@ def _holes(board: Board, part: Part, origin: complex) -> None:
         _pattern(board, group)
     for hole, words in named:
         at = hole.center - origin
-        board.rows.append((words, f"X {decimal(at.real)}  Y {decimal(at.imag)}"))
+        board.rows.append((words, f"X {length_text(at.real)}  Y {length_text(at.imag)}"))
 
 
 def hole_text(hole: Circle) -> str:
@@ -164,9 +164,9 @@ def _slot(board: Board, shape: Loop) -> None:
     sweep = float(np.angle(corners[1:half] / corners[: half - 1]).sum())
     first = math.degrees(cmath.phase(complex(corners[0])))
     end = Circle(center=complex(corners[[half - 1, half]].mean()), diameter=width)
-    words, last = f"slot R{decimal(0.5 * width)}", first + math.degrees(sweep)
-    board.callout(end, words, "radius", row=("slot, width", decimal(width)))
-    board.rows.append(("slot, mid radius", decimal(middle)))
+    words, last = f"slot R{length_text(0.5 * width)}", first + math.degrees(sweep)
+    board.callout(end, words, "radius", row=("slot, width", length_text(width)))
+    board.rows.append(("slot, mid radius", length_text(middle)))
     board.rows.append(("slot, ends at", f"{decimal(first)}, {decimal(last)} deg"))
 
 

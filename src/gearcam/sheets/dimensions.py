@@ -11,10 +11,9 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.base.numerals import decimal
 from gearcam.numeric.arrays import Plane
 from gearcam.parts.shapes import Circle
-from gearcam.sheets.sheet import GAP, HEIGHT, SheetDimension, Text, text_width
+from gearcam.sheets.sheet import GAP, HEIGHT, SheetDimension, Text, length_text, text_width
 
 ARROW: Final = 3.0
 """Length of an arrow head, mm of paper."""
@@ -61,7 +60,7 @@ class Measure:
 
 def diameter_text(diameter: float) -> str:
     """Return a `diameter`, mm, as the text of a dimension."""
-    return f"Ø{decimal(diameter)}"
+    return f"Ø{length_text(diameter)}"
 
 
 def arrow_head(tip: complex, way: complex, unit: float) -> Plane:
@@ -107,7 +106,7 @@ def linear(
     way, level = (1j, at) if vertical else (1.0, 1j * at)
     ends = one.ends(vertical)
     low, high = sorted(ends)
-    words = one.text or decimal(high - low)
+    words = one.text or length_text(high - low)
     label = f"({words})" if one.aside else words
     lines = []
     for point, end in zip((one.first, one.second), ends, strict=True):

@@ -19,6 +19,7 @@ from typing import Final
 from gearcam.base import readable
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.facts import Facts, NamedFact
+from gearcam.base.inches import file_unit
 from gearcam.base.numerals import decimal, formatted
 from gearcam.parts.shapes import Circle
 from gearcam.sheets.board import Board
@@ -56,9 +57,6 @@ SCALES: Final = tuple(b * 10.0**power for power in range(2, -7, -1) for b in (5.
 
 ALONE: Final = 36.0
 """Space for dimensions beside a view that stands below the others, mm."""
-
-_FINE: Final = 5e-4
-"""Least length, mm, and angle, deg, that a table has in thousandths."""
 
 _NONE: Final = 1e-9
 """Lengths and angles that are 0 but for rounding."""
@@ -178,8 +176,9 @@ def choose(size: complex, room: complex, rows: int, wide: float = 0.0) -> tuple[
 
 def sheet_rows(facts: Facts, names: Sequence[str]) -> dict[str, str]:
     """Return the rows of a drawing's table: the quantities `names` that exist in `facts`."""
-    by_name = {one.name: one for one in facts.quantities()}
-    named = [by_name[name] for name in names if name in by_name]
+    unit = file_unit()
+    by_name = {one.name: one for one in unit.told(facts).quantities()}
+    named = [by_name[name] for name, _ in map(unit.column, names) if name in by_name]
     return {one.meaning: _row_text(one) for one in named}
 
 
@@ -195,11 +194,14 @@ def _row_text(fact: NamedFact) -> str:
 
 
 def _number(value: float, unit: str) -> str:
-    """Return a number of a table: lengths and angles to thousandths, as they are dimensioned."""
+    """Return a number of a table: lengths and angles as they are dimensioned, unless they are 0."""
     if isinstance(value, int):
         return str(value)
-    coarse = unit in ("mm", "deg") and (abs(value) >= _FINE or abs(value) < _NONE)
-    return decimal(value) if coarse else readable.number(value, unit)
+    lengths = file_unit()
+    decimals = {"deg": 3, lengths.name: lengths.decimals}.get(unit)
+    if decimals is None or _NONE <= abs(value) < 0.5 * 10.0**-decimals:
+        return readable.number(value, unit)
+    return decimal(value, decimals)
 
 
 def begin(
@@ -366,7 +368,7 @@ def _block(board: Board, heading: Heading, corner: complex) -> None:
         [("title", heading.title, 80.0), ("created by", notes.author, 40.0),
          ("legal owner", notes.owner, 60.0)],
         [("scale", scale_words(board.scale), 18.0), ("projection", "", 24.0),
-         ("units", "mm, deg", 20.0), ("paper", board.paper, 18.0),
+         ("units", f"{board.units.units}, deg", 20.0), ("paper", board.paper, 18.0),
          ("general tolerances", notes.general_tolerances, 40.0),
          ("document type", f"{'assembly' if number is None else 'part'} drawing", 60.0)],
         [("material", notes.of("material", number), 80.0),

@@ -15,6 +15,7 @@ import math
 from collections.abc import Mapping
 from typing import Final
 
+from gearcam.base.inches import file_unit
 from gearcam.base.numerals import decimal
 from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Hub, Part, ScrewHole
@@ -25,7 +26,7 @@ from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board
 from gearcam.sheets.callouts import callouts, frames, thread, turning_arrow
 from gearcam.sheets.dimensions import Measure, diameter_text
 from gearcam.sheets.paper import NO_VALUES, Heading, Values, begin, finish
-from gearcam.sheets.sheet import CENTERLINE, EDGE, HEIGHT, HIDDEN, Sheet, Text, fine
+from gearcam.sheets.sheet import CENTERLINE, EDGE, HEIGHT, HIDDEN, Sheet, Text, fine, length_text
 from gearcam.sheets.symbols import datum, section_letters, section_line
 from gearcam.sheets.wheel import SAME, UP, Sense, Unrolled, Wheel, fitted, floor_of, holes_of
 
@@ -105,18 +106,18 @@ def part_sheet(
 
 
 def _notes(wheel: Wheel) -> list[str]:
-    part, chamfer = wheel.part, wheel.part.chamfer
+    part, chamfer, name = wheel.part, wheel.part.chamfer, file_unit().name
     about = " R, X, Y from the axis; angles from x, to the right." if wheel.turns else ""
     if not wheel.turns and holes_of(part):
         side = "left" if wheel.origin.real == wheel.low.real else "right"
         about = f" X, Y from the {'cross' if wheel.placed else f'lower {side} corner'}."
     return [
-        *([f"Chamfer {decimal(chamfer)} x 45 deg on both faces."] if chamfer else []),
+        *([f"Chamfer {length_text(chamfer)} x 45 deg on both faces."] if chamfer else []),
         *(["Holes go right through."] if holes_of(part) else []),
         f"All sizes are finished sizes.{about}",
         wheel.unrolled.note
         if wheel.unrolled
-        else f"Outline: DXF file of this part, chord tolerance {fine(part.tolerance)} mm.",
+        else f"Outline: DXF file of this part, chord tolerance {fine(part.tolerance)} {name}.",
     ]
 
 
@@ -205,7 +206,7 @@ def _screw(board: Board, wheel: Wheel, screw: ScrewHole, shift: float) -> None:
     ends = complex(middle, side * (inner - over)), complex(middle, side * (outer + over))
     board.line(CENTERLINE, *ends)
     turned = math.degrees(screw.angle) % 360.0
-    at = f"at {decimal(turned)} deg, z {decimal(screw.middle)} mm"
+    at = f"at {decimal(turned)} deg, z {length_text(screw.middle)} {file_unit().name}"
     board.rows.append((thread(screw), at))
 
 
@@ -251,13 +252,13 @@ def _bore_view(board: Board, wheel: Wheel, bore: Loop, left: float) -> None:
     half = 0.5 * float(abs(floor[1] - floor[0]))
     edge, limits = complex(x - half, top), ""
     if kind == "keyway":
-        words = fitted(decimal(2.0 * half), wheel.fits.get("keyway"))
+        words = fitted(length_text(2.0 * half), wheel.fits.get("keyway"))
         board.measure([Measure(edge, edge + 2.0 * half, words)], max(top, radius), side=1)
         key = keyway_of(2.0 * radius)
         if wheel.fits.get("keyway") and key and abs(top - radius - key.hub_depth) < SAME:
-            limits = f" (+{key.tolerance}/0)"
+            limits = f" (+{fine(key.tolerance)}/0)"
     bottom = complex(x, -radius) if kind != "flats" else edge.conjugate()
-    depth = decimal(top - bottom.imag) + limits
+    depth = length_text(top - bottom.imag) + limits
     board.measure([Measure(bottom, edge, depth)], x - radius, vertical=True)
     datum(board, complex(x - radius, -radius - FIRST_LEVEL * unit), -1.0)
     line = complex(x, -radius - (FIRST_LEVEL + 5.0 + HEIGHT) * unit)

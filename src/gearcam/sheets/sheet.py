@@ -13,13 +13,14 @@ from __future__ import annotations
 
 import math
 import unicodedata
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Final, Literal
 
 import numpy as np
 
 from gearcam.base.display import ShortRepr
+from gearcam.base.inches import FileUnit, file_unit
 from gearcam.base.numerals import decimal
 from gearcam.numeric.arrays import Plane
 from gearcam.pictures import drawings
@@ -87,10 +88,23 @@ SAGITTA: Final = 0.005
 """Chord error of arcs in formats without them, mm of paper."""
 
 
+def length_text(value: float) -> str:
+    """Return a length, mm, as text in the unit of the files that are written."""
+    unit = file_unit()
+    return decimal(value / unit.size, unit.decimals)
+
+
 def fine(value: float) -> str:
-    """Return a small length, such as a tolerance, as text with two digits and no exponent."""
-    digits = max(3, 1 - math.floor(math.log10(value)))
-    return decimal(value, digits)
+    """Return a small length, such as a tolerance, as `length_text`, with at least two digits."""
+    unit = file_unit()
+    size = value / unit.size
+    digits = 1 - math.floor(math.log10(abs(size))) if size else 0
+    return decimal(size, max(unit.decimals, digits))
+
+
+def column(unit: str) -> tuple[str, Callable[[float], str]]:
+    """Return the unit in which a table tells numbers of a `unit`, and how these become text."""
+    return (file_unit().name, length_text) if unit == "mm" else (unit, decimal)
 
 
 def text_width(text: str, height: float = HEIGHT) -> float:
@@ -268,6 +282,8 @@ class Sheet(ShortRepr):
         All other texts.
     rows : list of (str, str)
         The table of data: label and value.
+    units : FileUnit
+        That of its texts, and of DXF: lengths are in it there, and mm here.
     """
 
     name: str
@@ -282,6 +298,7 @@ class Sheet(ShortRepr):
     dimensions: list[SheetDimension] = field(default_factory=list)
     texts: list[Text] = field(default_factory=list)
     rows: list[tuple[str, str]] = field(default_factory=list)
+    units: FileUnit = field(default_factory=file_unit)
 
     @property
     def unit(self) -> float:

@@ -1,7 +1,7 @@
 """Prints at full size: a drawing on as many A4 pages as it needs, to be glued together.
 
 Neighbouring pages show a strip twice; in its middle are cross marks at the corners of each page.
-Below are the row and the column of the page and a ruler of 100 mm, to check the printer by.
+Below are the row and the column of the page and a ruler of 100 mm or 4 in, to check the printer by.
 
 Depends on drawings and sheets.
 """
@@ -14,6 +14,7 @@ from typing import Final
 
 import numpy as np
 
+from gearcam.base.inches import file_unit
 from gearcam.pictures.drawings import Cross, Drawing, Feature, Path, box
 from gearcam.sheets.sheet import CENTERLINE, DIMENSION, RULE, Box, Sheet, Text, text_width
 
@@ -26,8 +27,8 @@ WINDOW: Final[Box] = (10.0 + 20.0j, 200.0 + 287.0j)
 OVERLAP: Final = 10.0
 """Width of what neighbouring pages both show, mm."""
 
-RULER: Final = 100.0
-"""Length of the ruler, mm."""
+RULERS: Final = {"mm": (100, 10, 50), "in": (4, 0.25, 1)}
+"""Length of the ruler, and from one of its ticks, and long ticks, to the next, by the unit."""
 
 _LINE: Final = 78.0
 """Width of the text beside the ruler, mm."""
@@ -64,6 +65,7 @@ def tiles(drawing: Drawing, title: str) -> Iterator[Sheet]:
         place = f"row {row + 1} of {up}, column {column + 1} of {across}"
         words = f"{title}, {drawing.name}, 1:1, {place}"
         squeeze = min(1.0, _LINE / text_width(words))
+        length, ruler = _ruler(corner + 10.0 + 11.0j)
         yield Sheet(
             name=drawing.name,
             title=title,
@@ -71,20 +73,22 @@ def tiles(drawing: Drawing, title: str) -> Iterator[Sheet]:
             size=PAGE,
             scale=1.0,
             corner=corner,
-            features=[*drawing.features, *marks, *_ruler(corner + 10.0 + 11.0j)],
+            features=[*drawing.features, *marks, *ruler],
             texts=[
                 Text(text=words, place=corner + 122.0 + 11.0j, squeeze=squeeze),
-                Text(text="100 mm", place=corner + 60.0 + 15.0j, anchor="middle"),
+                Text(text=length, place=corner + 60.0 + 15.0j, anchor="middle"),
             ],
         )
 
 
-def _ruler(start: complex) -> tuple[Feature, ...]:
-    """Return a ruler with a tick for each 10 mm."""
-    ticks = [
-        (start + 10.0 * k, start + 10.0 * k + (3.0j if k % 5 == 0 else 2.0j)) for k in range(11)
-    ]
-    return tuple(
+def _ruler(start: complex) -> tuple[str, list[Feature]]:
+    """Return the length of a ruler as text, and its lines."""
+    unit = file_unit()
+    length, step, long = RULERS[unit.name]
+    places = [start + unit.size * at for at in np.arange(0.0, length + 0.5 * step, step)]
+    each = round(long / step)
+    ticks = [(at, at + (2.0j if number % each else 3.0j)) for number, at in enumerate(places)]
+    return f"{length} {unit.name}", [
         Feature(layer=RULE, shape=Path(points=np.array(line), closed=False))
-        for line in ((start, start + RULER), *ticks)
-    )
+        for line in ((start, places[-1]), *ticks)
+    ]

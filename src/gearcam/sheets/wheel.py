@@ -15,7 +15,6 @@ from typing import Any, Final, cast
 import numpy as np
 
 from gearcam.base.errors import InfeasibleError
-from gearcam.base.numerals import decimal
 from gearcam.numeric.arrays import Plane, bounds
 from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Bevel, Opening, Part, ScrewHole
@@ -23,6 +22,7 @@ from gearcam.parts.shapes import Circle, Loop, true_points
 from gearcam.pictures.drawings import BORE, HOLE, Drawing, placed
 from gearcam.sheets.dimensions import diameter_text
 from gearcam.sheets.sections import Section, crossings
+from gearcam.sheets.sheet import fine
 from gearcam.sheets.spec import DrawingNotes
 
 SAME: Final = 1e-6
@@ -223,7 +223,7 @@ def fitted(words: str, fit: Any) -> str:
     """Return `words`, a size, with tolerance class and limits of its `fit`, a FitSize or None."""
     if fit is None:
         return words
-    limits = f"±{decimal(fit.upper)}"
+    limits = f"±{fine(fit.upper)}"
     if fit.lower != -fit.upper:
-        limits = "/".join(f"{'+' * (one > 0)}{decimal(one)}" for one in (fit.upper, fit.lower))
+        limits = "/".join(f"{'+' * (one > 0)}{fine(one)}" for one in (fit.upper, fit.lower))
     return f"{words} {fit.tolerance_class} ({limits})"

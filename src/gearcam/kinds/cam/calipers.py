@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearcam.base.errors import InfeasibleError
+from gearcam.base.inches import file_unit
 from gearcam.cams.caliper import caliper, lowered, wheel
 from gearcam.kinds.shared import steps_of_turn
 
@@ -78,11 +79,11 @@ def sheet_table(result: CamResult, number: int) -> Table:
     """
     if result.carrier.around:
         return caliper_table(result, SHEET_STEP, number)
-    step = 10.0 ** math.floor(math.log10(result.program.period / _ROWS))
-    step *= next(
-        one for one in (1.0, 2.0, 5.0, 10.0) if one * step * _ROWS >= result.program.period
-    )
-    return caliper_table(result, step, number)
+    size = file_unit().size
+    period = result.program.period / size
+    step = 10.0 ** math.floor(math.log10(period / _ROWS))
+    step *= next(one for one in (1.0, 2.0, 5.0, 10.0) if one * step * _ROWS >= period)
+    return caliper_table(result, size * step, number)
 
 
 def _heights(walls: Sequence[Any], step: float) -> Table:

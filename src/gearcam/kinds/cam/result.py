@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.base.findings import Finding, in_order, run_checks
-from gearcam.base.numerals import decimal
 from gearcam.base.registry import deferred
 from gearcam.cams.carriers import ROUNDING
 from gearcam.cams.checks import KIND
@@ -337,17 +336,16 @@ class CamResult(MadeCam):
     def values(self, number: int) -> Values:
         """Return the radii, or the heights of a plate, of a part (see `PartsResult.values`)."""
         from gearcam.sheets.paper import Values
+        from gearcam.sheets.sheet import column
 
-        table = _TABLE(self, number)
-        ends = [name.rpartition("_") for name in table]
-        columns = (np.ma.filled(column, np.nan).tolist() for column in table.values())
-        return Values(
-            title=tuple(f"{name.split('_')[-1]}, {unit}" for name, _, unit in ends),
-            rows=[
-                tuple("" if math.isnan(one) else decimal(one) for one in row)
-                for row in zip(*columns, strict=True)
-            ],
-        )
+        title, columns = [], []
+        for name, values in _TABLE(self, number).items():
+            *_, word, own = name.split("_")
+            unit, text = column(own)
+            title.append(f"{word}, {unit}")
+            numbers = np.ma.filled(values, np.nan).tolist()
+            columns.append(["" if math.isnan(one) else text(one) for one in numbers])
+        return Values(title=tuple(title), rows=[*zip(*columns, strict=True)])
 
 
 def pressure_column(motion: PitchMotion) -> str:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.base.findings import Finding, in_order, run_checks
+from gearcam.base.inches import files_in
 from gearcam.base.numerals import FEW, formatted
 from gearcam.gears import checks  # noqa: F401  (its checks register themselves)
 from gearcam.gears.subject import KIND
@@ -138,11 +139,12 @@ class GearPairResult(MadePair):
         from gearcam.sheets.paper import sheet_rows
 
         design, pose = self.design, self.design.output.pose
-        rows = {"law": design.law_type, **sheet_rows(self.facts, PAIR_ROWS)}
-        rows["drawn at phi1"] = f"{formatted(math.degrees(pose), FEW)} deg"
         radius = float(abs(self.pair.rolling.tracks[0].frames(np.array([pose])).p[0]))
         heading = self.heading(None)
-        pair = pair_sheet(self.drawing, self.pair.shift, rows, heading, pitch_radius=radius)
+        with files_in(design.files_in):
+            rows = {"law": design.law_type, **sheet_rows(self.facts, PAIR_ROWS)}
+            rows["drawn at phi1"] = f"{formatted(math.degrees(pose), FEW)} deg"
+            pair = pair_sheet(self.drawing, self.pair.shift, rows, heading, pitch_radius=radius)
         return *super().sheets, pair
 
     def centrode_angles(self, count: int | None = None) -> Array:

@@ -13,6 +13,7 @@ from typing import Final
 
 import numpy as np
 
+from gearcam.base.inches import file_unit
 from gearcam.numeric.arrays import bounds
 from gearcam.numeric.contour import Contour
 from gearcam.parts.shapes import extremes, true_points
@@ -110,7 +111,7 @@ def pair_sheet(
         board.label(shaft, f"gear{number}")
     tolerance = max(contour.tolerance for contour in drawing.contours)
     notes = [
-        f"Chord tolerance of the outlines: {fine(tolerance)} mm.",
+        f"Chord tolerance of the outlines: {fine(tolerance)} {file_unit().name}.",
         "Chain lines: centrodes; they touch at the pitch point.",
         "Make each wheel from its own drawing and file.",
     ]

@@ -236,9 +236,9 @@ def sheets(result: GloboidalCamResult) -> tuple[Sheet, ...]:
 
     cam = result.cam
     drawing = Drawing(name="cam", features=chained(sheet(cam), *grooves(cam), *paths(cam)))
-    column = "turret, deg", lambda at: np.degrees(result.program.derivatives(at, 0)[0])
+    tabled = "turret", "deg", lambda at: np.degrees(result.program.derivatives(at, 0)[0])
     texts = (
         "globoid unrolled",
         "Unrolled: through the rollers' middle, not true. Walls: walls.csv, and the solid.",
     )
-    return (cam_sheet(result, max(result.rims), drawing, SHEET_ROWS, column, texts),)
+    return (cam_sheet(result, max(result.rims), drawing, SHEET_ROWS, tabled, texts),)

@@ -225,12 +225,12 @@ def sheets(result: SpatialCamResult) -> tuple[Sheet, ...]:
     from gearcam.kinds.gridded_sheet import cam_sheet
 
     scale, unit = result.lift_unit
-    name, heights = f"lift, {unit}", lambda at: scale * result.program.derivatives(at, 0)[0]
+    tabled = "lift", unit, lambda at: scale * result.program.derivatives(at, 0)[0]
     if not result.design.follower.oscillating:
-        name, heights = "z, mm", lambda at: centers(result, at).imag
+        tabled = "z", "mm", lambda at: centers(result, at).imag
     texts = (
         "outside unrolled",
         "Chain line: roller's middle. Walls: walls.csv, and the solid. z from the back.",
     )
     radius, outside = result.cam.outer_radius, developed_drawing(result)
-    return (cam_sheet(result, radius, outside, SHEET_ROWS, (name, heights), texts),)
+    return (cam_sheet(result, radius, outside, SHEET_ROWS, tabled, texts),)
