@@ -231,10 +231,6 @@ def test_the_report_is_in_inches(inch: Any) -> None:
     assert [one for one in labels if one.endswith(", in")]
 
 
-def test_drawings_stay_in_mm(inch: Any, mm: Any) -> None:
-    assert inch.files("drawing-svg") == mm.files("drawing-svg")
-
-
 def test_a_table_in_inches_is_read(tmp_path: Any) -> None:
     theta = np.arange(0.0, 360.0, 10.0)
     lift = 0.2 * (1.0 - np.cos(np.radians(theta)))

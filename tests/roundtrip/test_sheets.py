@@ -16,6 +16,7 @@ from ezdxf.entities.dimension import Dimension
 from ezdxf.lldxf.encoding import decode_dxf_unicode
 
 from gearcam.base.errors import DesignError, InfeasibleError
+from gearcam.base.inches import files_in
 from gearcam.base.numerals import decimal
 from gearcam.export.dxf import DxfStyle
 from gearcam.export.dxf_read import measure_dxf, read_dxf
@@ -36,7 +37,7 @@ from gearcam.pictures.drawings import Path as Chain
 from gearcam.sheets.paper import Heading
 from gearcam.sheets.sheet import CAPITAL, Sheet
 from gearcam.sheets.spec import DrawingSpec
-from gearcam.sheets.tiles import OVERLAP, PAGE, RULER, WINDOW, tiles
+from gearcam.sheets.tiles import OVERLAP, PAGE, WINDOW, tiles
 from helpers_built import built
 from helpers_contour import disc_contour, edges, gear_contour
 from helpers_pairs import PROFILES
@@ -430,16 +431,21 @@ def test_neighbouring_pages_show_a_strip_twice_with_marks_in_its_middle() -> Non
     assert len(shared) == 2
 
 
-def test_the_ruler_of_a_print_is_true() -> None:
+@pytest.mark.parametrize(
+    ("units", "count", "length", "words"),
+    [("mm", 11, 100.0, "100 mm"), ("inch", 17, 101.6, "4 in")],
+)
+def test_the_ruler_of_a_print_is_true(units: str, count: int, length: float, words: str) -> None:
     """As drawn in the PDF, in points."""
-    page = pypdfium2.PdfDocument(sheet_pdf(pages(100.0 + 80.0j), "t", WINDOW))[0]
+    with files_in(units):
+        page = pypdfium2.PdfDocument(sheet_pdf(pages(100.0 + 80.0j), "t", WINDOW))[0]
     boxes = [one.get_bounds() for one in page.get_objects()]
     ticks = [left for left, low, right, high in boxes if right - left < 2.0 and high - low < 12.0]
-    assert len(ticks) == 11
-    assert max(ticks) - min(ticks) == pytest.approx(RULER * POINT, abs=0.01)
-    words = page.get_textpage().get_text_range()
-    assert "row 1 of 1, column 1 of 1" in words
-    assert "100 mm" in words
+    assert len(ticks) == count
+    assert max(ticks) - min(ticks) == pytest.approx(length * POINT, abs=0.01)
+    shown = page.get_textpage().get_text_range()
+    assert "row 1 of 1, column 1 of 1" in shown
+    assert words in shown
 
 
 @pytest.mark.parametrize(

@@ -26,9 +26,19 @@ from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board
 from gearcam.sheets.callouts import callouts, frames, thread, turning_arrow
 from gearcam.sheets.dimensions import Measure, diameter_text
 from gearcam.sheets.paper import NO_VALUES, Heading, Values, begin, finish
-from gearcam.sheets.sheet import CENTERLINE, EDGE, HEIGHT, HIDDEN, Sheet, Text, fine, length_text
+from gearcam.sheets.sheet import (
+    CENTERLINE,
+    EDGE,
+    HEIGHT,
+    HIDDEN,
+    Sheet,
+    Text,
+    fine,
+    length_text,
+    text_width,
+)
 from gearcam.sheets.symbols import datum, section_letters, section_line
-from gearcam.sheets.wheel import SAME, UP, Sense, Unrolled, Wheel, fitted, floor_of, holes_of
+from gearcam.sheets.wheel import SAME, UP, Sense, Unrolled, Wheel, floor_of, holes_of
 
 LEFT: Final = 24.0
 BETWEEN: Final = 34.0
@@ -36,10 +46,12 @@ RIGHT: Final = 26.0
 ABOVE: Final = 14.0
 BELOW: Final = 5.0
 BORE_ROOM: Final = 44.0
+BORE_LEFT: Final = 18.0
+TEXT_ROOM: Final = 8.0
 UNROLLED: Final = 36.0
 """Space for dimensions left of, between, right of and above the views, more below the front view
-for the line of the section, for those of the bore's view,
-and for those of an unrolled outside, mm of paper."""
+for the line of the section, at least for those of the bore's view, of this left of the bore and
+between it and a text, and for those of an unrolled outside, mm of paper."""
 
 
 def part_sheet(
@@ -82,7 +94,10 @@ def part_sheet(
     size = wheel.high - wheel.low + part.thickness + (2.0 * wheel.radius if wheel.keyed else 0.0)
     levels = max(1 + len(part.bosses) + len(part.recesses), 1 + wheel.placed)
     below = BELOW + FIRST_LEVEL + LEVEL * levels
-    across = BETWEEN + RIGHT + (BORE_ROOM if wheel.keyed else 0.0)
+    across = BETWEEN + RIGHT
+    if wheel.keyed is not None:
+        wide = max(text_width(wheel.bore_text), text_width(wheel.floor_text))
+        across += max(BORE_ROOM, BORE_LEFT + TEXT_ROOM + wide)
     rows = len(facts) + len(part.openings) + 2 + values.tall
     outside = box(unrolled.drawing.features)[1] if unrolled else 0j
     room = complex(LEFT, below + (UNROLLED if unrolled else 0.0)), complex(across, ABOVE)
@@ -94,7 +109,9 @@ def part_sheet(
     _front_view(board, wheel)
     _section(board, wheel, side)
     if wheel.keyed is not None:
-        _bore_view(board, wheel, wheel.keyed, side + part.thickness + (RIGHT + 18.0) * board.unit)
+        _bore_view(
+            board, wheel, wheel.keyed, side + part.thickness + (RIGHT + BORE_LEFT) * board.unit
+        )
     _front_sizes(board, wheel)
     _section_sizes(board, wheel, side)
     if turning is not None:
@@ -252,8 +269,8 @@ def _bore_view(board: Board, wheel: Wheel, bore: Loop, left: float) -> None:
     half = 0.5 * float(abs(floor[1] - floor[0]))
     edge, limits = complex(x - half, top), ""
     if kind == "keyway":
-        words = fitted(length_text(2.0 * half), wheel.fits.get("keyway"))
-        board.measure([Measure(edge, edge + 2.0 * half, words)], max(top, radius), side=1)
+        across = Measure(edge, edge + 2.0 * half, wheel.floor_text)
+        board.measure([across], max(top, radius), side=1)
         key = keyway_of(2.0 * radius)
         if wheel.fits.get("keyway") and key and abs(top - radius - key.hub_depth) < SAME:
             limits = f" (+{fine(key.tolerance)}/0)"

@@ -22,7 +22,7 @@ from gearcam.parts.shapes import Circle, Loop, true_points
 from gearcam.pictures.drawings import BORE, HOLE, Drawing, placed
 from gearcam.sheets.dimensions import diameter_text
 from gearcam.sheets.sections import Section, crossings
-from gearcam.sheets.sheet import fine
+from gearcam.sheets.sheet import fine, length_text
 from gearcam.sheets.spec import DrawingNotes
 
 SAME: Final = 1e-6
@@ -132,6 +132,12 @@ class Wheel:
     def bore_text(self) -> str:
         """Diameter of the bore with tolerance class and limits."""
         return fitted(diameter_text(2.0 * self.radius), self.fits.get("diameter"))
+
+    @property
+    def floor_text(self) -> str:
+        """Width of the keyway with tolerance class and limits; of a flat its width."""
+        _, (start, end) = floor_of(cast("Loop", self.keyed))
+        return fitted(length_text(float(abs(end - start))), self.fits.get("keyway"))
 
     @property
     def screwed(self) -> tuple[float, float]:
