@@ -166,15 +166,27 @@ def test_a_wrong_number_is_seen() -> None:
     assert len(list(misses(summary, off))) == 1
 
 
+STEMS = {
+    **{
+        one: one
+        for one in ("inspection", "tool_path", "curvature", "report", "caliper", "grinding")
+    },
+    "measures": "inspection",
+    "rotary_path": "tool_path",
+}
+"""The word in ``output.files`` of files whose names begin so."""
+
+
 def kind_of(file: str) -> str:
     """The word in ``output.files`` that asks for a file."""
-    path = Path(file)
-    for stem in ("inspection", "tool_path", "curvature", "report"):
-        if path.stem.startswith(stem):
-            return stem.replace("_", "-")
-    if file in ("rotary_path.csv", "cam.nc"):
-        return "tool-path" if path.suffix == ".csv" else "gcode"
-    return ("drawing-" if path.stem.endswith("_drawing") else "") + path.suffix[1:]
+    stem, suffix = Path(file).stem, Path(file).suffix[1:]
+    for start, word in STEMS.items():
+        if stem.startswith(start):
+            return word.replace("_", "-")
+    if suffix == "nc":
+        return "gcode"
+    role = next((f"{one}-" for one in ("drawing", "cut", "print") if stem.endswith(one)), "")
+    return role + suffix
 
 
 WRITTEN = (
