@@ -54,7 +54,7 @@ _KINDS: Final = {"linear": 0, "vertical": 0, "diameter": 3, "radius": 4}
 
 
 _ANSI31: Final = 3.175
-"""Distance of the lines of this pattern, mm."""
+"""Distance of the lines of this pattern, mm; drawings in inches have it in inches."""
 
 
 def sheet_dxf(sheet: Sheet, style: DxfStyle) -> bytes:
@@ -157,7 +157,7 @@ def _hatch(space: Any, sheet: Sheet, hatch: Hatch, old: bool) -> None:
         return
     made = space.add_hatch(color=256, dxfattribs=there)
     # a name that programs know, with its lines as far apart as on paper
-    made.set_pattern_fill("ANSI31", scale=gap / _ANSI31)
+    made.set_pattern_fill("ANSI31", scale=gap / _ANSI31 * sheet.units.size)
     for loop in hatch.loops:
         made.paths.add_polyline_path(as_pairs(loop).tolist(), is_closed=True)
 
