@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
-from gearcam.base.inches import FileUnit, file_unit
+from gearcam.base.inches import MILLIMETRES, FileUnit, file_unit
 from gearcam.base.numerals import formatted
 from gearcam.numeric.arcs import fit_closed
 from gearcam.numeric.arrays import Array, Plane, as_pairs
@@ -106,7 +106,9 @@ def dxf_bytes(drawing: Drawing, style: DxfStyle) -> bytes:
     return text.encode("utf-8")
 
 
-def document_text(version: str, fill: Callable[[Document], None], unit: FileUnit) -> str:
+def document_text(
+    version: str, fill: Callable[[Document], None], unit: FileUnit = MILLIMETRES
+) -> str:
     """Return the text of a DXF file.
 
     Parameters
