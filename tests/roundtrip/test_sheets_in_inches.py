@@ -66,7 +66,7 @@ TOKEN = re.compile(
 )
 """What is the same in every unit, or a number."""
 
-LENGTHS = re.compile(r"\d mm\b|Ø|\bX |^Chamfer")
+LENGTHS = re.compile(r"\d in\b|Ø|\bX |^Chamfer")
 """What cells with lengths have in them."""
 
 OF_LENGTHS = re.compile(
@@ -121,7 +121,7 @@ class Page:
 def parted(text: str) -> tuple[list[str], list[float]]:
     """The words of a text, with # for each number, and the numbers."""
     found = [*TOKEN.finditer(text)]
-    words = ["#" if one["number"] else re.sub(r"^mm\b", "in", one[0]) for one in found]
+    words = ["#" if one["number"] else one[0] for one in found]
     return words, [float(one["number"]) for one in found if one["number"]]
 
 
@@ -142,6 +142,7 @@ def wrong(label: str, mm: str, inch: str) -> bool:
         return inch != RENAMED[mm]
     if " to " in mm and " to " not in inch:  # rounded to the same
         inch = re.sub(r"^([\d.]+)", r"\1 to \1", inch)
+    mm = re.sub(r"(?<!g )\bmm\b", "in", mm)
     (words, sizes), (others, values) = parted(mm), parted(inch)
     if words != others:
         return True

@@ -15,7 +15,7 @@ import numpy as np
 from gearcam.base.errors import DesignError, Problem
 from gearcam.base.facts import Fact
 from gearcam.base.findings import Finding, run_checks
-from gearcam.base.inches import unit_in
+from gearcam.base.inches import INCH, unit_in
 from gearcam.base.numerals import FEW, formatted
 from gearcam.cams.checks import FittedMotion
 from gearcam.cams.spec import FITTED
@@ -158,13 +158,11 @@ class FittedDesign:
         studies = tuple(one for one in given.output.studies if one != "follow")
         sizes = given.cam
         if self.of_profile and self._low and given.form in _SIZED:
-            follower = self.wall.follower
-            radius = round(follower.distance(follower.start + self._low), 6)
-            if sizes.prime_radius is not None:
-                sizes = replace(sizes, prime_radius=radius)
-            else:
-                radius -= self.result.follower.radius
-                sizes = replace(sizes, base_radius=round(radius, 6))
+            follower, unit = self.wall.follower, INCH if given.units == "inch" else 1.0
+            key, radius = "prime_radius", follower.distance(follower.start + self._low)
+            if sizes.prime_radius is None:
+                key, radius = "base_radius", radius - self.result.follower.radius
+            sizes = replace(sizes, **{key: unit * round(radius / unit, 6)})
         return replace(
             given,
             name=f"{given.name}_fitted",

@@ -52,6 +52,15 @@ def test_a_lift_in_inches_is_round_in_inches(tmp_path: Path) -> None:
     assert fitted.to_dict()["motion"][0]["lift_in"] == pytest.approx(0.3125, rel=1e-14)
 
 
+def test_a_radius_in_inches_is_round_in_inches() -> None:
+    result = gearcam.build(gearcam.load(PLATE).with_({"units": "inch"}))
+    larger = gearcam.build(result.design.with_({"cam.prime_radius_in": 1.53}))
+    points = larger.cam.outline[::10]
+    made = result.follow(points, fit=True).files["fitted.toml"].decode()
+    (size,) = re.findall(r"prime_radius_in = ([\d.]+)", made)
+    assert len(size) <= 8
+
+
 @pytest.mark.parametrize("head", few(["theta_deg,lift_mm", "angle_deg,lift_mm"]))
 def test_a_lift_becomes_a_design_that_builds(head: str, tmp_path: Path) -> None:
     file = written(tmp_path / "lift.csv", double_dwell(8.0), head)
