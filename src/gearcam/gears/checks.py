@@ -471,7 +471,7 @@ def measuring_pin(subject: CheckedPair, limit: float) -> Iterator[Remark]:  # no
         measuring = gear.measuring
         diameter, pins = measuring.pins(asked)
         size, where = readable(diameter, "mm"), f"wheel {gear.wheel}"
-        if asked is None and diameter != round(diameter, 2):
+        if asked is None and not measuring.over.simple:
             text = "No pin of a simple size touches all flanks near their middle; this one is "
             yield Remark(f"{text}{size} thick. output.pin_diameter_mm sets another.", where)
         missed = ~pins.measured

@@ -39,15 +39,18 @@ class Measuring(ShortRepr):
         The wheel.
     outline : Outline
         Its teeth as made.
+    inches : bool
+        Whether simple sizes of pins are those in inches.
     """
 
     wheel: Wheel
     outline: Outline
+    inches: bool = False
 
     @cached_property
     def over(self) -> PinMeasures:
         """Over pins, and chords of teeth."""
-        return PinMeasures(outline=self.outline)
+        return PinMeasures(outline=self.outline, inches=self.inches)
 
     @cached_property
     def spans(self) -> Spans:

@@ -154,11 +154,14 @@ class Gear(ShortRepr, NotebookView):
         Driver or driven.
     profile : Outline
         Its outline, with its curves and the ends of its flanks.
+    inches : bool
+        Whether pins to measure it have simple sizes in inches.
     """
 
     pair: GearPair
     wheel: Wheel
     profile: Outline
+    inches: bool = False
 
     @property
     def name(self) -> str:
@@ -195,7 +198,7 @@ class Gear(ShortRepr, NotebookView):
         """What a shop measures on its teeth."""
         from gearcam.gears.measuring import Measuring
 
-        return Measuring(wheel=self.wheel, outline=self.profile)
+        return Measuring(wheel=self.wheel, outline=self.profile, inches=self.inches)
 
     def flank_points(self, count: int) -> Columns:
         """Return points on the exact finished flanks of all whole teeth.

@@ -13,7 +13,7 @@ Depends on outline.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import takewhile
@@ -22,6 +22,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from gearcam.base.display import ShortRepr
+from gearcam.base.inches import INCH
 from gearcam.gears.flank import Curve, Toothing, trace
 from gearcam.gears.flank_ends import flank_crossings
 from gearcam.gears.outline import Outline
@@ -45,6 +46,9 @@ _OUT: Final = 0.05
 
 _FINEST, _STEPS = 0.01, 8.0
 """Steps of the sizes of pins: hundredths of a mm, but not below an eighth of the possible range."""
+
+_INCHES: Final = (*(0.5**power for power in range(7)), 0.01, 0.005, 0.001)
+"""Steps in inches, the simplest first: fractions to 1/64, then decimals."""
 
 
 class Spaces(NamedTuple):
@@ -141,9 +145,12 @@ class PinMeasures(ShortRepr):
     ----------
     outline : Outline
         The teeth as made: backlash, clearance, shortened and rounded tips are in it.
+    inches : bool
+        Whether simple sizes of pins are those in inches.
     """
 
     outline: Outline
+    inches: bool = False
 
     @property
     def toothing(self) -> Toothing:
@@ -303,25 +310,35 @@ class PinMeasures(ShortRepr):
         np.minimum.at(gap, space, np.abs(points[root] - center[space]))
         return gap
 
-    @cached_property
+    @property
     def recommended(self) -> float:
         """The pin that serves this wheel, diameter in mm: of a simple size if one does.
 
         It touches the flanks near their middle in all spaces, stands out and clears the root. Where
         no pin does so in all spaces, it is that of the middle space.
         """
+        return self._recommended[0]
+
+    @property
+    def simple(self) -> bool:
+        """Whether the recommended pin has a simple size."""
+        return self._recommended[1]
+
+    @cached_property
+    def _recommended(self) -> tuple[float, bool]:
         least, most = self.thinnest.diameter, self.thickest.diameter
         there, module = np.isfinite(least + most), self.toothing.pitch / math.pi
         if not there.any():
-            return 0.5 * self.toothing.pitch
+            return 0.5 * self.toothing.pitch, False
         for share in _SHARES:
             low, high = (one.diameter[there] for one in self._inside(share))
             possible = np.isfinite(low + high).all()
-            for diameter in _sizes(float(low.max()), float(high.min())) if possible else ():
+            ends = float(low.max()), float(high.min())
+            for diameter in _sizes(*ends, self.inches) if possible else ():
                 pins = self.pins(diameter)
                 if (pins.measured & (pins.stands_out > _OUT * module))[there].all():
-                    return diameter
-        return float(np.median(0.5 * (least + most)[there]))
+                    return diameter, True
+        return float(np.median(0.5 * (least + most)[there])), False
 
     @cached_property
     def chords(self) -> dict[str, Array]:
@@ -355,16 +372,18 @@ class PinMeasures(ShortRepr):
         return table
 
 
-def _sizes(low: float, high: float) -> Iterator[float]:
+def _sizes(low: float, high: float, inches: bool) -> Iterator[float]:
     """Yield diameters in a range, mm: simple sizes first, of equally simple ones the middle."""
     finest = max(_FINEST, (high - low) / _STEPS)
-    steps = (
+    steps: Iterable[float] = (
         part * 10.0**power
         for power in range(math.ceil(math.log10(max(high, _FINEST))), -3, -1)
         for part in (1.0, 0.5, 0.25)
     )
+    if inches:
+        steps = [INCH * part for part in _INCHES]
     for step in takewhile(lambda step: step > finest * (1.0 - _SHARE), steps):
         counts = range(math.ceil(low / step), math.floor(high / step) + 1)
         yield from sorted(
-            (round(n * step, 4) for n in counts), key=lambda d: abs(2 * d - low - high)
+            (round(n * step, 7) for n in counts), key=lambda d: abs(2 * d - low - high)
         )

@@ -110,3 +110,13 @@ def test_changes_of_a_whole_list_can_be_copied_as_one(units: str) -> None:
     assert key == ("pin_diameter_in" if units == "inch" else "pin_diameter_mm")
     assert len(value) == 2
     assert remedy.design == wide.with_(remedy.changes)
+
+
+def test_measuring_pins_have_simple_sizes_in_inches() -> None:
+    design = gearcam.load(PROFILES / "inch_pair.toml").with_({"output.files": ["inspection"]})
+    for pitch, size in ((7, 0.25), (12, 5 / 32), (24, 5 / 64)):
+        result = gearcam.build(design.with_({"pair.diametral_pitch": pitch}))
+        found = result.files("inspection")["measures.csv"].decode().splitlines()
+        column = found[0].split(",").index("pin_diameter_in")
+        assert {row.split(",")[column] for row in found[1:]} == {repr(size)}
+        assert not [one for one in result.findings if one.code == "measuring-pin"]

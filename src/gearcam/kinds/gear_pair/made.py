@@ -167,7 +167,8 @@ class MadePair(PartsResult):
 
     def _made(self, wheel: Wheel, pair: GearPair, tolerance: float) -> Gear:
         """Return a wheel as it would be without bore and rim, at a chord `tolerance`, mm."""
-        return make_gear(pair, wheel, tolerance, self.tolerances, self.design.back)
+        gear = make_gear(pair, wheel, tolerance, self.tolerances, self.design.back)
+        return replace(gear, inches=self.design.units == "inch")
 
     @property
     def gears(self) -> tuple[Gear, Gear]:
