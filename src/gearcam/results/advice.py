@@ -443,15 +443,22 @@ class Search:
         return self._least(lambda one: self.in_class(places.at(one)), looks, guessed=bool(guess))
 
     def _told(self, adjustment: Adjustment) -> Adjustment:
-        """Return an adjustment in the units of the file; a single length in inches is rounded."""
+        """Return an adjustment in the units of the file; lengths in inches are rounded.
+
+        Several lengths are so only where that cures: they may have to fit together.
+        """
         own = told(adjustment, self.result.design.units)
-        if own is adjustment or own.far or len(own.near) != 1 or own.near == adjustment.near:
+        if own is adjustment or own.far or own.near == adjustment.near:
             return own
-        ((key, value),) = own.near.items()
+        near = {key: self._rounded(key, value) for key, value in own.near.items()}
+        return replace(own, near=near) if len(near) == 1 or self.cures(near) else own
+
+    def _rounded(self, key: str, value: Any) -> Any:
+        """Return a length with few digits, farther from that of the design; others as they are."""
         given = self.number(key)
         if not isinstance(value, float) or not isinstance(given, float) or value in (0.0, given):
-            return own
-        return replace(own, near={key: shortened(value, abs(value) - abs(given))})
+            return value
+        return shortened(value, abs(value) - abs(given))
 
     def _least(
         self, at: Callable[[int], Changes], looks: Iterable[int], *, guessed: bool = False

@@ -74,6 +74,11 @@ def test_a_refusal_has_the_key_and_the_numbers_of_the_file(tmp_path: Path) -> No
         ("bore", "blank.bore_diameter_in = 0.9523"),
         ("large marks", "blank.mark_diameter_in = 0.1624"),
         ("play", "pair.backlash_in = 0.1235"),
+        (
+            "bolts within the teeth of a thin rim",
+            "blank.bolt_circle_in[1] = 4.272 and ring.rim_in = 0.2976 "
+            "and blank.timing_marks = false",
+        ),
     ],
 )
 def test_remedies_are_round_in_inches(name: str, text: str, tmp_path: Path) -> None:
