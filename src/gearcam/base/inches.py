@@ -220,6 +220,9 @@ def of_pitch(allowed: str) -> str:
     )
 
 
+_IN_INCHES: Final = ', or say units = "inch" at the top of the file'
+
+
 def both_ways(key: str, value: Any, known: Collection[str]) -> str:
     """Return how to give what stands in inches in a file in mm; empty if it does not.
 
@@ -232,12 +235,13 @@ def both_ways(key: str, value: Any, known: Collection[str]) -> str:
     known : collection of str
         The keys that are known.
     """
+    key = _PITCH if key.lower() == "dp" else key
     name = key_mm(key)
     if key == name or name not in known:
         return ""
     written = value_mm(key, value)
     words = f"write {name} = {_few(written)}" if isinstance(written, float) else "in mm"
-    return f'did you mean {name}? ({words}, or say units = "inch" at the top of the file)'
+    return f"did you mean {name}? ({words}{_IN_INCHES})"
 
 
 def _few(value: float) -> str:
@@ -275,6 +279,7 @@ def telling(units: str) -> Iterator[None]:
 
 def text_in(text: str) -> str:
     """Return a text with its keys and lengths in inches; limits stay on their side."""
+    text = text.replace(_IN_INCHES, "")
     text = re.sub(f'"{_FIT}"', lambda size: f'"{formatted(float(size[1]) / INCH)}{size[2]}"', text)
     text = _SET.sub(_set_in, text)
     text = _MEASURE.sub(_measured_in, text)

@@ -57,11 +57,34 @@ _SPELLINGS: Final[Mapping[str, str]] = {
     **dict.fromkeys(("shaft",), "bore"),
     **dict.fromkeys(("shift",), "x"),
     **dict.fromkeys(("direction",), "rotation"),
+    **dict.fromkeys(("hole",), "bolt"),
+    **dict.fromkeys(("holes", "screws"), "bolts"),
+    **dict.fromkeys(("finish", "roughness", "texture"), "surface"),
 }
 """Other spellings of words of keys, and other words for the same thing."""
 
-_NAMES: Final = {"thickness": "face_width", "diametral_pitch": "module"}
-"""Other names of keys, where no table has the written one."""
+_NAMES: Final[Mapping[str, tuple[str, ...]]] = {
+    "thickness": ("face_width",),
+    **dict.fromkeys(("diametral_pitch", "dp"), ("module",)),
+    **dict.fromkeys(("fit", "bore_fit", "bore_tolerance"), ("bore_diameter",)),
+    **dict.fromkeys(("bcd", "pcd", "pitch_circle"), ("bolt_circle",)),
+    **dict.fromkeys(("bolt_pitch", "hole_pitch"), ("bolt_spacing",)),
+    "holes": ("bolts", "lightening_holes"),
+    "spokes": ("lightening_holes",),
+    **dict.fromkeys(("mark", "marks", "zero_mark", "zero_marks"), ("timing_marks", "zero_mark")),
+    **dict.fromkeys(("bevel", "edge_break"), ("chamfer",)),
+    "grub_screw": ("set_screw",),
+    **dict.fromkeys(("title", "name", "number", "drawing_number", "id"), ("part_number",)),
+    **dict.fromkeys(("hardness", "hardening", "hardened"), ("heat_treatment",)),
+    **dict.fromkeys(("ra", "rz"), ("surface",)),
+    **dict.fromkeys(
+        ("tolerance", "tolerances"), ("general_tolerances", "chord_tolerance", "bore_diameter")
+    ),
+    **dict.fromkeys(("checked_by", "checked", "checker"), ("approved_by",)),
+    **dict.fromkeys(("drawn_by", "designed_by", "made_by", "designer", "creator"), ("author",)),
+    **dict.fromkeys(("company", "firm", "organization"), ("owner",)),
+}
+"""Other names of keys, without units."""
 
 _RELATED: Final = ({"radius", "diameter"}, {"width", "thickness"})
 _SYNONYMS: Final[Mapping[str, tuple[str, ...]]] = {
@@ -80,10 +103,18 @@ _SYNONYMS: Final[Mapping[str, tuple[str, ...]]] = {
     **dict.fromkeys(("flat-faced", "flat-face"), ("flat",)),
     **dict.fromkeys(("mushroom", "spherical", "curved"), ("domed",)),
     **dict.fromkeys(("knife", "edge"), ("knife-edge",)),
-    **dict.fromkeys(("nc", "cnc", "ngc", "g-code"), ("gcode",)),
-    **dict.fromkeys(("print", "printing", "3d", "3d-print"), ("stl", "3mf")),
+    **dict.fromkeys(("nc", "cnc", "ngc", "g-code"), ("gcode", "milling")),
+    **dict.fromkeys(("print", "printing", "3d", "3d-print"), ("stl", "3mf", "printing")),
+    **dict.fromkeys(("edm", "wire-edm"), ("wire",)),
+    "pdf": ("drawing-pdf", "print-pdf"),
+    **dict.fromkeys(("drawing", "drawings", "sheet", "blueprint"), ("drawing-pdf", "drawing")),
+    **dict.fromkeys(("dwg", "cad"), ("dxf",)),
+    **dict.fromkeys(("svg-cut", "laser-svg"), ("cut-svg",)),
+    **dict.fromkeys(("measures", "measuring"), ("inspection",)),
+    **dict.fromkeys(("rackbar", "rack_bar", "rack-bar", "rail"), ("bar",)),
+    **dict.fromkeys(("title_block", "titleblock"), ("drawing",)),
 }
-"""Other words that people use: phases of a motion, forms of cams, followers, files."""
+"""Other words that people use: phases of a motion, forms of cams, followers, files, tables."""
 
 _SLIDES: Final = {
     name.replace("t", "p"): name for name in ("rrt", "trr", "rtr", "trt", "rtt", "ttr", "rtrr")
@@ -134,7 +165,8 @@ def _similar(word: str, known: Iterable[str]) -> list[str]:
     """Return the known words that a word is similar to, the best first."""
     names = list(known)
     close = difflib.get_close_matches(word, names, n=1, cutoff=STRONG)
-    return close + [near for near in difflib.get_close_matches(word, names) if near[0] == word[0]]
+    near = [one for one in difflib.get_close_matches(word, names) if one[0] == word[0]]
+    return close + sorted(near, key=lambda one: not word.startswith(one))  # M3x5 is no M5
 
 
 def did_you_mean(word: Any, known: Iterable[str]) -> str:
@@ -214,10 +246,10 @@ def _likeness(key: str, entry: Key) -> float:
     stem, unit = _split(key)
     quantity = entry.param.quantity
     names = {entry.key.removesuffix(quantity.suffix), entry.name}
-    words = _words(_NAMES.get(stem, stem))
+    written = [_words(one) for one in _NAMES.get(stem.lower(), (stem,))]
     # a key that is called like another word for something else is that key
-    known = ([name] if name in _SPELLINGS else _words(name) for name in names)
-    score = max(_words_likeness(words, one) for one in known)
+    known = [[name] if name in _SPELLINGS else _words(name) for name in names]
+    score = max(_words_likeness(one, other) for one in written for other in known)
     other = unit and not quantity.unit.startswith(_UNITS[unit])
     return score - _OTHER_UNIT if other else score
 
@@ -297,6 +329,8 @@ def _unit_words(key: str, entry: Key) -> str:
     quantity, unit = entry.param.quantity, _split(key)[1]
     if unit and not quantity.suffix:
         return " (it has no unit)"
+    if entry.param.fit and re.search("fit|tolerance", key):
+        return ' (size and class: "25 H7")'
     if quantity not in (ANGLE, LENGTH) or key.endswith(quantity.suffix):
         return ""
     what = "angles" if quantity is ANGLE else "lengths"

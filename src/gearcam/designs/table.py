@@ -128,7 +128,7 @@ class Table:
         return {
             f"{self.title}.{key}": entry.param.choices
             for key, entry in self.entries.items()
-            if entry.param.choices and entry.length is None
+            if entry.param.choices and (entry.length is None or entry.param.both)
         }
 
     @cached_property

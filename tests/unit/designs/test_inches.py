@@ -159,6 +159,8 @@ def test_a_change_is_given_in_inches_or_in_mm() -> None:
          'write bore_diameter_mm = 9.525, or say units = "inch" at the top'),
         ('units = "inch"\n', "", "pair.diametral_pitch", "unknown key",
          'write module_mm = 2.116666667, or say units = "inch" at the top'),
+        ("diametral_pitch = 12", "dp = 12", "pair.dp", "unknown key",
+         "did you mean diametral_pitch? (write diametral_pitch = 12)"),
         ("[blank]\n", '[blank]\nunits = "inch"\n', "blank.units", "unknown key",
          "belongs at the top of the file"),
     ],

@@ -230,6 +230,28 @@ MISTAKES = [
     (CAM, "follower", "ofset_mm", "offset_mm"),
     (CAM, "blank", "bore_mm", "bore_diameter_mm"),
     (CAM, "blank", "bore_rad", "bore_diameter_mm"),
+    (CAM, "blank", "thickness_mm", ""),  # which is no width of a keyway
+    (PAIR, "pair", "dp", "module_mm"),
+    (PAIR, "blank", "holes", "bolts or lightening_holes"),
+    (PAIR, "blank", "hole_diameter_mm", "bolt_diameter_mm"),
+    (PAIR, "blank", "pcd_mm", "bolt_circle_mm"),
+    (PAIR, "blank", "bore_fit", "bore_diameter_mm"),
+    (PAIR, "blank", "marks", "timing_marks"),
+    (CAM, "blank", "marks", "zero_mark"),
+    (CAM, "blank", "bevel_mm", "chamfer_mm"),
+    (PAIR, "bar", "holes", "bolts"),
+    (PAIR, "bar", "hole_spacing_mm", "bolt_spacing_mm"),
+    (PAIR, "drawing", "hardness", "heat_treatment"),
+    (PAIR, "drawing", "surface_roughness", "surface"),
+    (PAIR, "drawing", "finish", "surface"),
+    (PAIR, "drawing", "tolerance", "general_tolerances"),
+    (PAIR, "drawing", "tolerances", "general_tolerances"),
+    (PAIR, "drawing", "title", "part_number"),
+    (PAIR, "drawing", "name", "part_number"),
+    (PAIR, "drawing", "number", "part_number"),
+    (PAIR, "drawing", "checked_by", "approved_by"),
+    (PAIR, "drawing", "drawn_by", "author"),
+    (PAIR, "drawing", "company", "owner"),
 ]
 
 
@@ -240,7 +262,27 @@ def test_a_likely_mistake_is_answered_with_the_key_that_was_meant(
     head = f"[{title}]"
     text = text.replace(head, f"{head}\n{key} = 1") if head in text else f"{text}{head}\n{key} = 1"
     (hint,) = (one.hint for one in problems(text) if one.key == f"{title}.{key}")
-    assert hint.startswith(f"did you mean {meant}?")
+    assert hint.startswith(f"did you mean {meant}?") if meant else "did you" not in hint
+
+
+@pytest.mark.parametrize(
+    ("text", "hint"),
+    [
+        ("[rackbar]\nheight_mm = 9", "bar?"),
+        ("[rack_bar]\nheight_mm = 9", "bar?"),
+        ("[title_block]\nauthor = 'A'", "drawing?"),
+        ("[output]\nfiles = ['pdf']", "drawing-pdf or print-pdf?"),
+        ("[output]\nfiles = ['drawing']", "drawing-pdf?"),
+        ("[output]\nprocess = 'edm'", "wire?"),
+        ("[blank]\nset_screw = 'M3x5'", "M3?"),
+        ("[blank]\nmotor = 'TT'", 'blank.shaft = "TT"?'),
+        ("[blank]\ntolerance = 'H7'", 'bore_diameter_mm? (size and class: "25 H7")'),
+    ],
+)
+def test_what_makers_call_tables_and_words_is_answered(text: str, hint: str) -> None:
+    title = text.split("\n")[0]
+    (problem,) = problems(f"{PAIR.split(title)[0]}\n{text}\n")
+    assert problem.hint == f"did you mean {hint}"
 
 
 @pytest.mark.parametrize(("unit", "size"), [("ft", "304.8"), ("thou", "0.0254")])
