@@ -30,7 +30,7 @@ from gearcam.base.facts import Facts
 from gearcam.numeric.arrays import Array, as_pairs, bounds
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.moments import Moments
-from gearcam.parts.shapes import Circle, Loop
+from gearcam.parts.shapes import Circle, Loop, true_points
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -492,9 +492,9 @@ class Part(ShortRepr, NotebookView):
 
     @property
     def size(self) -> tuple[float, float, float]:
-        """Extents along x, y and z of its frame, mm, hub included, to the chord tolerance."""
-        points = np.concatenate([layer.edge.polyline(self.tolerance) for layer in self.layers])
-        low, high = bounds(points)
+        """Extents along x, y and z of its frame, mm, hub included: those of the true edges."""
+        edges = (one.edge for one in self.layers if not isinstance(one.edge, Loop))
+        low, high = bounds(true_points(edges))
         return (high - low).real, (high - low).imag, self.thickness
 
     @property
