@@ -276,8 +276,9 @@ def excludes(name: str, *others: str, allowed: str = "") -> Rule:
     def breaches(values: Values) -> Iterator[Breach]:
         beside = [other for other in others if values[other].given]
         if values[name].given and beside:
-            rule = _listed(_keys(values, name, *others), one=True)
-            yield name, None, f"is given beside {values[beside[0]].text}", allowed or rule
+            rule = allowed or _listed(_keys(values, name, *others), one=True)
+            rule = _for_other_wheel(values[name], values[beside[0]]) + rule
+            yield name, None, f"is given beside {values[beside[0]].text}", rule
 
     def schema(keys: Fields) -> Schema:
         if any(keys[one].both for one in (name, *others)):
@@ -286,6 +287,17 @@ def excludes(name: str, *others: str, allowed: str = "") -> Rule:
         return {"if": keys[name].given, "then": {"not": beside}}
 
     return Rule(breaches, schema)
+
+
+def _for_other_wheel(one: Value, other: Value) -> str:
+    """Return how only the wheel without `one` is given `other`; empty if both have `one`."""
+    lacks = [one._is_none(value) for value in one.contents]
+    if other.contents or not any(lacks):
+        return ""
+    none = f'"{NONE}"' if isinstance(other.default, str) else "0"
+    value = other.text.partition(" = ")[2]
+    pair = ", ".join(value if lack else none for lack in lacks)
+    return f"{other.key} = [{pair}] for the wheel without {one.key}; else "
 
 
 def only_with(names: Iterable[str], key: str, *words: Any, why: str = "") -> Rule:

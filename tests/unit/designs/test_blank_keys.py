@@ -189,3 +189,27 @@ def test_a_blank_made_in_python_meets_the_same_rules(change: dict[str, Any], goo
     else:
         with pytest.raises(DesignError, match="not within the bore"):
             replace(design, blank=Blank(**change))
+
+
+@pytest.mark.parametrize(
+    ("both", "one", "size"),
+    [
+        ("bore_diameter_mm = 8", 'shaft = ["TT", "none"]', "[0, 8]"),
+        ('bore_diameter_mm = "8 H7"', 'shaft = ["none", "TT"]', '["8 H7", 0]'),
+        ('bore_diameter_mm = 12\nkeyway = "DIN 6885"', "bore_flat_mm = [0, 11]",
+         '["DIN 6885", "none"]'),
+    ],
+)  # fmt: skip
+def test_what_one_wheel_excludes_is_left_to_the_other_as_the_message_says(
+    both: str, one: str, size: str
+) -> None:
+    (problem,) = problems(GOOD + f"{one}\n{both}")
+    remedy, _, rest = problem.allowed.partition(" for the wheel without ")
+    assert remedy == f"{both.splitlines()[-1].partition(' =')[0]} = {size}"
+    assert rest.startswith(one.partition(" =")[0])
+    read(f"{one}\n{both.replace(both.splitlines()[-1], remedy)}")
+
+
+def test_a_wheel_that_has_both_gets_no_such_remedy() -> None:
+    (problem,) = problems(GOOD + 'shaft = "TT"\nbore_diameter_mm = 8')
+    assert "[" not in problem.allowed
