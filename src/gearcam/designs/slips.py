@@ -249,7 +249,8 @@ def _likeness(key: str, entry: Key) -> float:
     written = [_words(one) for one in _NAMES.get(stem.lower(), (stem,))]
     # a key that is called like another word for something else is that key
     known = [[name] if name in _SPELLINGS else _words(name) for name in names]
-    score = max(_words_likeness(one, other) for one in written for other in known)
+    likeness = (_words_likeness(one, other) for one in written for other in known)
+    score = 1.0 if stem in names else max(likeness)
     other = unit and not quantity.unit.startswith(_UNITS[unit])
     return score - _OTHER_UNIT if other else score
 
