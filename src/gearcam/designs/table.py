@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any
 
-from gearcam.base.quantities import OPPOSITES, REQUIRED, Param, Solve, params_of
+from gearcam.base.quantities import OPPOSITES, REQUIRED, TEXT, Param, Solve, params_of
 from gearcam.parts.fits import FitSize, fitted
 
 
@@ -233,7 +233,7 @@ def _split(hint: Any) -> tuple[Any, str]:
 
 
 def settled(part: Any) -> Any:
-    """Return input with tuples instead of lists and arrays, and Python numbers.
+    """Return input with tuples instead of lists and arrays, Python numbers, defaults for None.
 
     Parameters
     ----------
@@ -253,7 +253,20 @@ def settled(part: Any) -> Any:
         return part if same else items
     if not dataclasses.is_dataclass(part) or isinstance(part, type):
         return part
-    given = {item.name: getattr(part, item.name) for item in dataclasses.fields(part)}
-    values = {name: settled(value) for name, value in given.items()}
+    items = {item.name: item for item in dataclasses.fields(part)}
+    given = {name: getattr(part, name) for name in items}
+    values = {name: _left_out(items[name], settled(value)) for name, value in given.items()}
     changed = {name: value for name, value in values.items() if value is not given[name]}
     return replace(part, **changed) if changed else part
+
+
+def _left_out(item: dataclasses.Field[Any], value: Any) -> Any:
+    """Return a value with its default in place of None, and that of one of two wheels too."""
+    if value is None:
+        return None if item.default is REQUIRED else item.default
+    one = item.metadata.get("param")
+    if not (one and one.both and isinstance(value, tuple) and len(value) == 2 and None in value):
+        return value
+    none = "" if one.quantity is TEXT else 0.0 if one.zero_is_none else None
+    usual = item.default if isinstance(item.default, tuple) else (none, none)
+    return tuple(map(lambda given, usual: usual if given is None else given, value, usual))

@@ -61,10 +61,12 @@ class DrawingNotes(ShortRepr):
         for one in fields(self):
             value = getattr(self, one.name)
             for number, text in enumerate(value if isinstance(value, tuple) else (value,)):
-                if isinstance(text, str) and not 0 < len(text.strip()) <= _LONGEST:
+                bare = text == "" and isinstance(value, tuple)  # of one wheel it is left out
+                if isinstance(text, str) and not bare and not 0 < len(text.strip()) <= _LONGEST:
                     what = "is too long for its cell" if text.strip() else "is empty"
                     index = number if isinstance(value, tuple) else None
-                    yield one.name, index, what, f"1 to {_LONGEST} characters, or leave it out"
+                    without = "leave it out" if index is None else '"" for none'
+                    yield one.name, index, what, f"1 to {_LONGEST} characters, or {without}"
         if self.date is not None and not _is_date(self.date):
             yield "date", None, "is not a date", "year-month-day, such as 2030-01-31"
         if self.surface is not None and not _SURFACE.fullmatch(self.surface):
@@ -75,7 +77,9 @@ class DrawingNotes(ShortRepr):
         value: str | tuple[str, str] = getattr(self, name) or ""
         if not isinstance(value, tuple):
             return value
-        return " + ".join(dict.fromkeys(value)) if number is None else value[number]
+        if number is not None or not any(value):
+            return value[number or 0]
+        return " + ".join(dict.fromkeys(one or "-" for one in value))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -37,6 +38,22 @@ def test_a_design_made_in_python_equals_the_one_read() -> None:
     )
     assert made.source == ""
     assert document_of(made) == document_of(read)
+
+
+def test_none_leaves_a_value_out_as_a_missing_key_does() -> None:
+    def made(**blank: Any) -> GearPairDesign:
+        pair = PairSpec(module=2.0, teeth=(21, 21))
+        return GearPairDesign(name="n", law=Ellipse(eccentricity=0.2), pair=pair, **blank)
+
+    names = [one.name for one in fields(gc.Blank)]
+    assert made(blank=gc.Blank(**dict.fromkeys(names))) == made()
+    halves = {"bore_diameter": (None, 8.0), "shaft": ("TT", None), "bolt_circle": (None, None)}
+    whole: Any = {"bore_diameter": (0.0, 8.0), "shaft": ("TT", "none"), "bolt_circle": (0.0, 0.0)}
+    assert made(blank=gc.Blank(**halves)).blank == gc.Blank(**whole)
+    notes: Any = {"material": ("C45E", None)}
+    assert made(drawing=gc.PairDrawingSpec(**notes)).drawing.material == ("C45E", "")
+    with pytest.raises(DesignError, match="above 0"):
+        made(blank=gc.Blank(density=(None, 7850.0)))
 
 
 def test_a_design_made_in_python_meets_the_same_rules() -> None:

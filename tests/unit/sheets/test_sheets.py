@@ -235,6 +235,10 @@ def test_several_parts_number_themselves() -> None:
     assert one.part_number == "G-7-2"
     assert (own.part_number, both.of("material", 1)) == ("B", "POM")
     assert both.of("part_number", None) == "A + B"
+    first = PairDrawingSpec(part_number=("A", ""), material=("", ""))
+    assert (first.of("part_number", None), first.of("material", None)) == ("A + -", "")
+    assert Heading(title="t", notes=first, number=0, of=2).part_number == "A"
+    assert not [*first.problems()]
 
 
 @pytest.mark.parametrize(
