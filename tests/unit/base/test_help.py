@@ -33,7 +33,18 @@ def test_every_parameter_is_told_of_once(name: str) -> None:
         if field.metadata["param"].quantity is LENGTH and field.name != "lift":
             assert "mm" in told
     assert doc.count("Parameters\n----------") <= 1
+    assert doc.count("Attributes\n----------") <= 1
     assert len(MADE) > 50
+
+
+@pytest.mark.parametrize("name", MADE)
+def test_what_a_class_does_not_take_is_no_parameter(name: str) -> None:
+    doc = inspect.getdoc(MADE[name]) or ""
+    told = re.findall(
+        r"^(\w+(?:, \w+)*)(?: : .*)?\n    \S", doc.partition("Attributes\n")[0], re.MULTILINE
+    )
+    fixed = {one.name for one in dataclasses.fields(MADE[name]) if not one.init}
+    assert fixed.isdisjoint(", ".join(told).split(", "))
 
 
 @dataclass(frozen=True, kw_only=True)
