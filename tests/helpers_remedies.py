@@ -124,6 +124,15 @@ REFUSED: dict[str, tuple[dict[str, Any], set[str]]] = {
              "timing_marks": False}),
         {"blank.bolt_diameter_mm", "blank.bolt_circle_mm"},
     ),
+    "bolts of a ring, but not of its pinion": (
+        pair({"type": "ellipse", "eccentricity": 0.1}, [24, 48], pair={"type": "internal"},
+             blank={"bolts": 6, "bolt_circle_mm": 110, "bolt_diameter_mm": 4}),
+        {"blank.bolts[0]"},
+    ),
+    "many lightening holes": (
+        pair(CIRCLE, [40, 40], blank={"lightening_holes": 36, "rim_mm": 12}),
+        {"blank.lightening_holes[0]", "blank.lightening_holes"},
+    ),
     "lightening holes": (
         pair(CIRCLE, [40, 40], blank={"lightening_holes": 5, "rim_mm": 40}),
         {"blank.lightening_holes"},

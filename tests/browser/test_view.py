@@ -294,7 +294,7 @@ def test_a_refused_design_has_a_red_verdict_and_the_sliders_stay(
         )
         assert hit
         until(lambda: page.find_elements(By.CSS_SELECTOR, "#error button"))
-        assert "blank.bore_diameter_mm[0] = " in error(page)
+        assert "blank.bore_diameter_mm = [" in error(page)
         page.find_element(By.CSS_SELECTOR, "#error button").click()
         until(lambda: not error(page))
         assert verdict(page) == good

@@ -99,7 +99,7 @@ def _text(canvas: Any, sheet: Sheet, text: Text) -> None:
         text.text.encode("cp1252")
     except UnicodeEncodeError as error:
         what = f"a PDF cannot show {text.text[error.start : error.end]!r} of {text.text!r}"
-        note = "drawing-svg and drawing-dxf, or Latin letters"
+        note = "drawing-svg and drawing-dxf, or letters of western Europe"
         raise InfeasibleError(what, where="output.files", nearest=note) from error
     at = complex(sheet.on_paper(np.array([text.place]))[0])
     canvas.saveState()

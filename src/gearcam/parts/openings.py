@@ -392,6 +392,8 @@ def _no_room(
         Adjustment(far={work.key(key): small}) for word, key, small in _SMALLER if word in crossing
     ]
     if "bolt" in crossing:
+        if work.wheel is not None and not work.bar:  # the other wheel keeps its own
+            adjustments.insert(0, Adjustment(near={work.key("bolts"): 0}))
         adjustments += [
             Adjustment(far={work.key(key): times * place})
             for key, place in places.items()
@@ -517,6 +519,7 @@ def _no_lightening(
     note = "the value is the distance between hub or bore and the nearest root"
     adjustments = (
         Adjustment(near={"blank.rim_mm": 0.5 * rim}),
+        Adjustment(far={work.key("lightening_holes"): 1}),
         Adjustment(far={work.key("hub_diameter_mm"): 0.0}),
         Adjustment(near=work.without(blank, "lightening_holes")),
     )

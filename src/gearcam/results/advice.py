@@ -30,7 +30,7 @@ from gearcam.base.adjustments import (
 )
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import DesignError, InfeasibleError
-from gearcam.base.inches import changes_in, changes_mm, key_mm, told
+from gearcam.base.inches import changes_in, changes_mm, key_mm, told, value_in
 from gearcam.base.numerals import shortened
 from gearcam.designs.design import Design, document_of, nested_designs, value_at
 from gearcam.designs.faults import dotted
@@ -89,14 +89,28 @@ class Remedy(ShortRepr):
     @property
     def text(self) -> str:
         """The changes as in a design file: ``pair.x = 0.2 and pair.teeth = [52, 52]``."""
-        return text_of(self.changes)
+        return text_of(self._written(self.changes))
 
     @property
     def next_less(self) -> str:
         """What still fails of the largest smaller change; empty where none was tried."""
         differing = {key: value for key, value in self.less.items() if value != self.changes[key]}
-        text = text_of(differing)
+        text = text_of(self._written(differing))
         return text.partition(" = ")[2] if len(differing) == 1 == len(self.changes) else text
+
+    def _written(self, changes: Changes) -> Changes:
+        """Return changes as a file has them: both values of what has two."""
+        written = dict[str, Any]()
+        for key, value in changes.items():
+            name, _, index = key.removesuffix("]").partition("[")
+            alone = index in ("0", "1")
+            two = value_at(document_of(self.design), key_mm(name)) if alone else None
+            if isinstance(two, list) and len(two) == 2:
+                own = two if key_mm(name) == name else value_in(key_mm(name), two)
+                written.setdefault(name, list(own))[int(index)] = value
+            else:
+                written[key] = value
+        return written
 
     @property
     def notes(self) -> str:

@@ -206,7 +206,8 @@ def check_runout(notes: DrawingNotes, parts: Sequence[Part]) -> None:
     """
     if notes.runout and not any(one.kind == BORE for part in parts for one in part.openings):
         what = "run-out is about a bore, and no part has one"
-        raise InfeasibleError(what, where="drawing.runout_mm", nearest="blank.bore_diameter_mm")
+        nearest = "blank.bore_diameter_mm or blank.shaft gives one; else leave runout_mm out"
+        raise InfeasibleError(what, where="drawing.runout_mm", nearest=nearest)
 
 
 def holes_of(part: Part) -> list[Circle]:

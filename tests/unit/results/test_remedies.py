@@ -254,6 +254,13 @@ def test_a_remedy_says_what_remains(remaining: tuple[str, ...], moves: bool, not
     assert [*remedy_lines(Remedies(found=(remedy,)))][1] == f"  law.e = 0.1{notes}"
 
 
+def test_a_remedy_of_one_wheel_is_told_as_a_file_has_it(folder: Path) -> None:
+    remedies = search("bolts of a ring, but not of its pinion", folder)
+    (line,) = [*remedy_lines(remedies)][1:]
+    assert line.strip() == "blank.bolts = [0, 6]"
+    assert remedies.found[0].changes == {"blank.bolts[0]": 0}
+
+
 def test_a_path_longer_than_a_line_is_not_broken() -> None:
     path = "/".join(["folder-with-hyphens"] * 8)
     assert wrapped(f"is not in {path} today").splitlines() == [

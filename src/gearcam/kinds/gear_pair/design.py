@@ -238,7 +238,8 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     bar = found.parts.get("bar", BarSpec())
     if not on_rack and isinstance(law, Mapping):
         for entry in table_of("bar", BarSpec).entries.values():
-            if (value := getattr(bar, entry.name)) != entry.default:
+            if getattr(bar, entry.name) != entry.default:
+                value = document["bar"][entry.key]
                 message = f"{show(value)}: is for a rack, and both elements are wheels"
                 yield Fault(("bar", entry.key), message, value, 'law.type = "rack"')
     if on_rack:
