@@ -133,6 +133,24 @@ def test_the_blank_shown_is_one_that_can_be_made() -> None:
     assert not [finding for finding in job.findings if finding.severity == "error"]
 
 
+def test_the_bar_shown_suits_the_rack_above_it() -> None:
+    page = (ROOT / "docs" / "gear-pairs.md").read_text(encoding="utf-8")
+    rack, bar = re.findall(
+        r'^```toml\n(\[law\]\ntype = "rack".*?|\[bar\].*?)^```$', page, re.DOTALL | re.MULTILINE
+    )
+    job = gearcam.build(loads(f'kind = "gear-pair"\nname = "r"\n{rack}\n{bar}'))
+    assert [one.name for one in job.parts[1].openings] == [f"bolt hole {k}" for k in (1, 2, 3, 4)]
+    assert not [finding for finding in job.findings if finding.severity == "error"]
+
+
+def test_the_drawing_shown_is_one_that_can_be_made() -> None:
+    page = (ROOT / "docs" / "drawings.md").read_text(encoding="utf-8")
+    (shown,) = re.findall(r"^```toml\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)
+    text = block("toml").partition("[output]")[0] + shown
+    written = gearcam.build(loads(text)).sheets[0].words
+    assert {"G-1024-1", "ISO 2768-mK", "2030-01-31"} <= {one.text for one in written}
+
+
 def test_the_readme_is_short_and_in_order() -> None:
     assert len(README.encode()) <= 9000
     titles = re.findall(r"^## (.+)$", README, re.MULTILINE)
