@@ -80,14 +80,16 @@ OPENING_RULES: Final = (
     needs("set_screw", "bore_diameter", "shaft", one=True, serves=True),
     needs("keyway_width", "keyway_depth"),
     below("keyway_width", "bore_diameter", why="is as wide as the bore"),
-    excludes("keyway", "keyway_width", "keyway_depth"),
+    excludes("keyway", "keyway_width", "keyway_depth",
+             allowed="keyway alone, or keyway_width_mm with keyway_depth_mm"),
     excludes("bore_flat", "keyway_width", "keyway"),
     excludes("bore_across_flats", "bore_flat", "keyway_width", "keyway"),
     below("bore_across_flats", "bore_diameter", why="is as wide as the bore"),
-    excludes("shaft", "bore_diameter", "bore_flat", "bore_across_flats", "keyway_width", "keyway"),
+    excludes("shaft", "bore_diameter", "bore_flat", "bore_across_flats", "keyway_width", "keyway",
+             allowed="shaft alone, or the sizes of the bore without it"),
     needs("hub_diameter", "hub_front", "hub_back", one=True),
     needs("bolts", "bolt_circle", "bolt_diameter"),
-)
+)  # fmt: skip
 """Rules for bore, hub and holes."""
 
 TAPPED: Final = {
@@ -291,7 +293,8 @@ class ShaftBlank(ShortRepr, Fitted):
             rule = f"above {formatted(reach)} mm, the diameter across the bore"
             yield "hub_diameter", None, "the bore is as large as the hub", rule
         if 0.0 < self.bore <= TAPPED.get(self.set_screw, 0.0):
-            rule = f"a tapping drill below the bore's {formatted(self.bore)} mm"
+            narrow = [f'"{name}"' for name, drill in TAPPED.items() if drill < self.bore]
+            rule = ", ".join(narrow) or "a larger bore"
             yield "set_screw", None, "the hole of the screw is as wide as the bore", rule
 
 

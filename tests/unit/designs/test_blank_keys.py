@@ -151,6 +151,12 @@ def test_contradictions_are_refused_by_reading(text: str, key: str, words: str) 
     assert problem.allowed
 
 
+def test_screws_that_fit_are_named() -> None:
+    text = 'shaft = "N20"\nset_screw = "M5"\nhub_diameter_mm = 9\nhub_front_mm = 9'
+    (problem,) = problems(GOOD + text)
+    assert problem.allowed == '"M2", "M2.5", "M3", "#4-40", "#6-32"'
+
+
 def test_a_shaft_is_a_bore_for_what_belongs_to_one() -> None:
     wide = "clearance_mm = 0.1\nclearance_bores = true\n"
     blank = read('shaft = ["28BYJ-48", "none"]\nkeyway_angle_deg = 30\n' + wide).blank
