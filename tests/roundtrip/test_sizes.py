@@ -75,14 +75,14 @@ def test_it_is_shown_and_needs_no_parts() -> None:
     assert quantity.meaning == "overall size of wheel 2"
     assert "parts" not in vars(result)
     wide, high = np.ptp(result.gear2.outline, axis=0)
-    assert quantity.value == pytest.approx([wide, high, 10.0], abs=2e-3)
+    assert quantity.value == [wide, high, 10.0]
     assert quantity.text == f"{wide:.2f} x {high:.2f} x 10 mm"
     assert any("overall size of wheel 2" in line for line in result.facts.lines())
 
 
-@pytest.mark.parametrize("files", [["csv"], ["drawing-svg"]], ids=["outlines", "parts"])
-def test_coarse_chords_do_not_change_it(files: list[str]) -> None:
+def test_coarse_chords_do_not_change_it() -> None:
     """Drawings have the sizes of the true curves, and so has the summary, at any tolerance."""
+    files = ["drawing-svg"]
     design = gc.load(PROFILES / "ellipse.toml")
     sizes = [
         gc.build(design.with_({"output.files": files, "output.chord_tolerance_mm": one})).facts[

@@ -51,7 +51,7 @@ class BuildOutput:
     table: tuple[str, ...] = ()
 
 
-CURED = Remedies(found=(Remedy(changes={"law.ratios[1]": 1.06}, design=None),))  # type: ignore[arg-type]
+CURED = Remedies(found=(Remedy(changes={"pair.x": 0.06}, design=None),))  # type: ignore[arg-type]
 
 
 class Result:
@@ -219,7 +219,7 @@ def test_an_impossible_design_tells_numbers_and_the_way_out(
         "the phases do not close",
         "value 350 deg, limit 360 deg",
         "\n  b\n",
-        "this change was built without errors:\n    law.ratios[1] = 1.06\n",
+        "this change was built without errors:\n    pair.x = 0.06\n",
     ):
         assert words in err
 

@@ -77,7 +77,7 @@ def test_a_refusal_has_the_key_and_the_numbers_of_the_file(tmp_path: Path) -> No
         (
             "bolts within the teeth of a thin rim",
             (
-                "blank.bolt_circle_in[1] = 4.272 and ring.rim_in = 0.2976 "
+                "blank.bolt_circle_in = [0, 4.272] and ring.rim_in = 0.2976 "
                 "and blank.timing_marks = false"
             ),
         ),

@@ -18,9 +18,8 @@ from gearcam.gears.subject import KIND, CheckedPair
 from gearcam.kinds.gear_pair.tables import POINTS
 from gearcam.laws.ratio.span import angle_text
 from gearcam.meshing.drive_checks import side_name
-from gearcam.numeric.arrays import bounds, distinct, first_least
+from gearcam.numeric.arrays import distinct, first_least
 from gearcam.parts.mass import part_facts, size_fact
-from gearcam.parts.shapes import true_points
 from gearcam.report.file import report_files
 from gearcam.results.parts import Files, Measured, part_files
 
@@ -319,8 +318,7 @@ def _part(result: GearPairResult, gear: Gear) -> Tree:
     if not result.ordered:
         if gear.hollow or len(result.leads) > 1:
             return {}  # its outside, or its other steps, are not made
-        low, high = bounds(true_points([gear.profile.contour]))
-        extents = (high - low).real, (high - low).imag, result.design.pair.face_width
+        extents = (*np.ptp(gear.outline, axis=0), result.design.pair.face_width)
         return {"size_mm": size_fact(extents, name)}
     part, tools = result.parts[number], result.parts_subject.tools[number]
     density = result.design.blank.wheel(gear.wheel).density
