@@ -192,6 +192,7 @@ def bevels(
         what = "the chamfers of both faces meet"
         near = (Adjustment(near={work.key("chamfer_mm"): 0.25 * least}),)
         raise work.refusal(what, size, 0.5 * least, "", near, "blank.chamfer_mm")
+    made: dict[tuple[int, bool], Bevel] = {}  # most edges are in both faces
     for up in (False, True):
         layer = part.steps[-1 if up else 0]
         rims = [(outside[up] if outside else layer.edge, layer, False)]
@@ -200,13 +201,16 @@ def bevels(
         far = rims[-1][1]
         rims += [(one.shape, far, True) for one in part.openings if one.kind == "BORE"]
         for edge, of, hollow in rims:
-            yield _bevel(part, edge, of, size, work, up=up, hollow=hollow)
+            same = id(edge), hollow
+            if same not in made:
+                made[same] = _bevel(part, edge, size, work, hollow=hollow)
+            by = made[same].high
+            low, high = (of.high - by, of.high) if up else (of.low, of.low + by)
+            yield replace(made[same], low=low, high=high, up=up)
 
 
-def _bevel(
-    part: Part, edge: Edge, layer: Layer, size: float, work: Workpiece, *, up: bool, hollow: bool
-) -> Bevel:
-    """Return the chamfer of an edge in the upper or the lower face of a layer."""
+def _bevel(part: Part, edge: Edge, size: float, work: Workpiece, *, hollow: bool) -> Bevel:
+    """Return the chamfer of an edge in a lower face at 0."""
     from gearcam.parts.parallel import moved, sized
     from gearcam.parts.rolled import too_far
 
@@ -215,14 +219,13 @@ def _bevel(
 
     def bevel(by: float) -> Bevel:
         """Return the chamfer of a size that loses no detail of the edge."""
-        low, high = (layer.high - by, layer.high) if up else (layer.low, layer.low + by)
         made = Bevel(
             edge=edge,
             middle=moved(whole, 0.5 * way * by),
             face=moved(whole, way * by),
-            low=low,
-            high=high,
-            up=up,
+            low=0.0,
+            high=by,
+            up=False,
             hollow=hollow,
         )
         if made.uneven > _UNEVEN * by * whole.length:

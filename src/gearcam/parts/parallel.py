@@ -71,7 +71,7 @@ def moved(contour: Contour, by: float) -> Contour:
     """
     if abs(by) <= _GRAIN * contour.tolerance:
         return contour
-    runs = [part.as_run(part.by) for part, _, _ in roll(contour, by)]
+    runs = [part.parallel for part, _, _ in roll(contour, by)]
     return _contour(runs, contour, by)
 
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -72,9 +73,14 @@ class Touched:
     @property
     def backwards(self) -> bool:
         """Whether the disc's centre moves backwards: its radius exceeds the radius of curvature."""
-        run = self.as_run(self.by)
+        run = self.parallel
         along = np.conj(run.tangents[1:] + run.tangents[:-1])
         return float((np.diff(run.points) * along).real.sum()) < 0.0
+
+    @cached_property
+    def parallel(self) -> Run:
+        """The path of the disc's centre."""
+        return self.as_run(self.by)
 
     def as_run(self, by: float) -> Run:
         """Return the parallel of the stretch at the distance `by`, mm, as a run."""
