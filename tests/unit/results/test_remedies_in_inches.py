@@ -19,8 +19,7 @@ from helpers_remedies import ERRORS, REFUSED, followed
 from helpers_sampling import chosen
 
 DESIGNS = {name: made[0] for name, made in (REFUSED | ERRORS).items()}
-QUICK = ("bore", "large marks", "bolts meet the outline", "play", "coarse", "arm",
-         "follower's offset", "concave part too tight", "a kerf too wide for flanks")  # fmt: skip
+QUICK = ("bore", "large marks", "play", "coarse", "follower's offset", "a kerf too wide for flanks")
 
 
 def in_inches(document: dict[str, Any], file: Path) -> dict[str, Any]:

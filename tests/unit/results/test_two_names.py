@@ -45,13 +45,15 @@ def samples() -> dict[str, list[Any]]:
             "lathe_slide",
         ],
         "spatial-cam": ["carton_pusher"],
-        "globoidal-cam": ["globoidal_indexer"],
+        "globoidal-cam": [],
     }
     results = {
         kind: [built(PROFILES / f"{one}.toml") for one in many] for kind, many in names.items()
     }
     cone = gc.load(PROFILES / "carton_pusher.toml").with_({"follower.cone_deg": 6.0})
     results["spatial-cam"].append(built(cone))
+    indexer = gc.load(PROFILES / "globoidal_indexer.toml").with_({"output.wall_step_deg": 3})
+    results["globoidal-cam"].append(built(indexer))
     return results
 
 
