@@ -20,7 +20,6 @@ from gearcam.parts.body import (
     Bevel,
     Edge,
     Hub,
-    Layer,
     Mark,
     Opening,
     Part,
