@@ -11,7 +11,7 @@ import os
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import lru_cache, partial
 from pathlib import Path as FilePath
 from typing import Any, Final
 
@@ -34,7 +34,7 @@ from gearcam.designs.kind import (
     variant_of,
 )
 from gearcam.designs.lines import Path, line_at, lines_of
-from gearcam.designs.nodes import Choice, Either, Many, Node, homes_of
+from gearcam.designs.nodes import Choice, Either, Keys, Many, Node, homes_of
 from gearcam.designs.parts import Reading
 from gearcam.designs.reader import LARGEST, decoded, document_in, find_tables
 from gearcam.designs.slips import STRONG, SURE, did_you_mean, hinted, key_hint, keyed
@@ -466,6 +466,11 @@ def _examine_title(
     if missing and title in kind.several and title not in kind.required:
         outcome.parts[title] = ()  # their class need not be imported
         return
+    if missing and title not in (*kind.required, *kind.nodes):
+        given = tuple(reading.given.items())
+        if (part := _of_nothing(kind.table_in(document, title), given)) is not None:
+            outcome.parts[title] = part
+            return
     node = kind.node(title, document)
     if missing and title in kind.required:
         outcome.faults.append(_missing(node, title))
@@ -474,6 +479,22 @@ def _examine_title(
     made = reading.read(node, document.get(title, empty), (title,))
     if made.clean:
         outcome.parts[title] = made.part
+
+
+@lru_cache(maxsize=512)
+def _of_nothing(table: Table, given: tuple[tuple[str, str], ...]) -> Any:
+    """Return what a table makes that is left out; None if it must not be, or makes nothing."""
+    reading = Reading(
+        document={},
+        given=dict(given),
+        words=dict[str, Any],
+        home=lambda *_: "",
+        far=lambda _: "",
+        filled=lambda _, raw, __: (raw, []),
+        faults=[],
+    )
+    made = reading.read(Keys(table=table), {}, (table.title,))
+    return made.part if made.clean else None
 
 
 def _missing(node: Node, title: str) -> Fault:
@@ -521,8 +542,8 @@ def _without_foreign(
 def _with_designs(table: Table, raw: Any, at: Path, place: Place) -> tuple[Any, list[Fault]]:
     """Return a table with its nested designs in place of documents and files, and their faults."""
     filled, faults = raw, list[Fault]()
-    for name, key in table.entries.items():
-        value = raw.get(name) if key.param.nested and isinstance(raw, Mapping) else None
+    for name, key in table.nested.items():
+        value = raw.get(name) if isinstance(raw, Mapping) else None
         if isinstance(value, str):
             design, more = _from_file(key, value, (*at, name), place)
         elif isinstance(value, Mapping):

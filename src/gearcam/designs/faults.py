@@ -15,7 +15,7 @@ from gearcam.base.quantities import Param
 from gearcam.designs.lines import Path
 from gearcam.designs.measures import measure_hint
 from gearcam.designs.slips import did_you_mean, nearest
-from gearcam.designs.table import Key, default_of
+from gearcam.designs.table import Key
 from gearcam.parts.fits import hole_problem
 
 MISSING: Final = object()
@@ -317,7 +317,7 @@ def _list_hint(value: Any, entry: Key) -> str:
         words = [word.strip() for word in value.split(",")]
         items = [nearest(word, entry.param.choices or ()) or word for word in words]
     else:
-        usual, count = default_of(entry), entry.length or 1
+        usual, count = entry.usual, entry.length or 1
         items = [value, *usual[1:]] if isinstance(usual, list | tuple) else [value] * count
     return f"write {entry.key} = {show(items)}"
 

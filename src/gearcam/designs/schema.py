@@ -16,7 +16,7 @@ from gearcam.base.rules import Field, Fields, Rule
 from gearcam.designs.faults import description
 from gearcam.designs.kind import KINDS, OF_MANY, DesignKind, Variants, variant_of
 from gearcam.designs.nodes import Choice, Either, Keys, Many, Node
-from gearcam.designs.table import Key, Table, default_of
+from gearcam.designs.table import Key, Table
 from gearcam.parts.fits import HOLE
 
 DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
@@ -278,7 +278,7 @@ def _fields(table: Table, title: str = "") -> dict[str, Field]:
     return {
         start + entry.name: Field(
             path=(*above, key),
-            default=default_of(entry),
+            default=entry.usual,
             none=(NONE if entry.base is str else 0,) if entry.param.zero_is_none else (),
             both=entry.param.both,
         )

@@ -55,6 +55,13 @@ class Key:
         """Whether the file must have this key, without an alternative."""
         return self.default is REQUIRED and not self.param.when
 
+    @cached_property
+    def usual(self) -> Any:
+        """The default in the unit of the file, that of one wheel; None without one."""
+        if self.default is REQUIRED or self.default is None:
+            return None
+        return self.outward(self.default)[0] if self.param.both else self.outward(self.default)
+
     def takes(self, count: int) -> bool:
         """Return whether its list may have `count` values."""
         return count == self.length if self.length else count >= (self.param.min_length or 0)
@@ -136,6 +143,11 @@ class Table:
         """Whether some keys depend on circumstances."""
         return any(entry.param.when for entry in self.entries.values())
 
+    @cached_property
+    def nested(self) -> Mapping[str, Key]:
+        """The keys that hold designs."""
+        return {name: entry for name, entry in self.entries.items() if entry.param.nested}
+
     def bound(self, circumstances: Collection[str]) -> Table:
         """Return the table with the keys for some `circumstances` (see `Param.when`)."""
         if not self.varies:
@@ -168,14 +180,7 @@ class Table:
         )
 
 
-def default_of(key: Key) -> Any:
-    """Return the default of a key in the unit of the file, that of one wheel; None without one."""
-    if key.default is REQUIRED or key.default is None:
-        return None
-    return key.outward(key.default)[0] if key.param.both else key.outward(key.default)
-
-
-@lru_cache(maxsize=128)
+@lru_cache(maxsize=512)
 def table_of(title: str, owner: type) -> Table:
     """Return the table of a parameter dataclass.
 

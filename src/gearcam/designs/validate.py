@@ -22,7 +22,7 @@ from gearcam.designs.slips import (
     misspelt,
     same_unit,
 )
-from gearcam.designs.table import Key, Table, default_of
+from gearcam.designs.table import Key, Table
 
 
 def faults_of(
@@ -119,7 +119,7 @@ def _values(
     for key, entry in table.entries.items():
         if entry.name in values and key not in written:
             continue  # of two keys of a field the one that is written
-        content, default = written.get(key), default_of(entry)
+        content, default = written.get(key), entry.usual
         path: Path = (key,)
         contents: tuple[Any, ...] = ()
         if entry.param.both and isinstance(content, list):
