@@ -9,10 +9,13 @@ from __future__ import annotations
 import pickle
 from collections import OrderedDict
 from dataclasses import fields
+from functools import cache
 from os import PathLike
+from pathlib import Path
 from typing import Any, Final
 
 import gearcam
+from arch import rules
 from gearcam.base.errors import GearcamError
 from gearcam.designs import Design
 from gearcam.designs.design import hash_of
@@ -29,7 +32,7 @@ def built(asked: Design | str | PathLike[str]) -> Any:
     Designs are the same if their hashes are, and all other values, such as names, limits and
     files, to the last digit.
     """
-    design = asked if isinstance(asked, Design) else gearcam.load(asked)
+    design = asked if isinstance(asked, Design) else _loaded(Path(asked))
     try:
         values = pickle.dumps([getattr(design, one.name) for one in fields(design)])
         key = hash_of(design), values
@@ -40,6 +43,16 @@ def built(asked: Design | str | PathLike[str]) -> Any:
     if len(_results) > _KEPT:
         _results.popitem(last=False)
     return result
+
+
+def _loaded(file: Path) -> Design:
+    """The design in a file, read once if it is one of the gallery, which no test changes."""
+    return _of_gallery(file) if file.parent == rules.ROOT / "profiles" else gearcam.load(file)
+
+
+@cache
+def _of_gallery(file: Path) -> Design:
+    return gearcam.load(file)
 
 
 def fresh(result: Any) -> Any:

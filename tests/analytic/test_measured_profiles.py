@@ -21,6 +21,7 @@ from gearcam.cams.three_points import three_point_curvature
 from gearcam.laws.motion_table import program_of_rows
 from gearcam.laws.program import Program
 from helpers_cams import KINDS, cam, lever
+from helpers_sampling import few
 
 Array = NDArray[np.float64]
 
@@ -43,7 +44,7 @@ def missed(made: DiscCam, program: Program) -> Array:
     return np.array([np.abs(one - other).max() for one, other in pairs])
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", few(KINDS))
 def test_the_lift_comes_back_from_the_radii_within_the_stated_error(kind: str) -> None:
     """The jerk jumps: of half the steps the error is an eighth, more or less; of cams cw too."""
     errors = []

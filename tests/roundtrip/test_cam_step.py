@@ -231,7 +231,7 @@ def test_walls_in_the_text_are_where_the_roller_passes(clockwise: bool) -> None:
             for radius, azimuth, z in zip(radii, azimuths, places[:, 2].tolist(), strict=True)
         )
 
-    places = [places_on(net, 3) for net in nets]
+    places = [places_on(net, 2) for net in nets]
     assert max(miss(one) for one in places) < 2.0 * TOLERANCE
     # the control: a wall that is off is seen
     assert miss(places[0] + np.array([0.0, 0.0, 1e-4])) > 9e-5

@@ -92,5 +92,5 @@ OTHERS = {
 def test_scripts_of_other_pages_run(name: str, desk: Path) -> None:
     assert "assert" in OTHERS[name]
     script = desk / "script.py"
-    script.write_text(OTHERS[name], "utf-8")
+    script.write_text(OTHERS[name].replace("200", "20"), "utf-8")  # assemblies
     runpy.run_path(str(script), run_name="__main__")

@@ -325,7 +325,7 @@ def test_too_many_natural_periods_are_refused_and_run_times_foretold(
     monkeypatch.setattr("gearcam.dynamics.stiff.time", clock)
     made = even(load=load)
     start = StiffState(0.0, W, 1e-4)  # it vibrates all the way
-    for turns in (1, 5):
+    for turns in (1, 3):
         foretold, before = made.forecast(start, turns * TURN), asked[0]
         made.run(start, turns * TURN)
         assert foretold == pytest.approx(asked[0] - before, rel=0.3)

@@ -14,13 +14,14 @@ from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.base.findings import run_checks
 from gearcam.dynamics.checks import VibratingTeeth
 from gearcam.dynamics.settings import VIBRATION
+from helpers_built import built
 
 RPM = math.pi / 30.0
 
 
 def study(name: str, changes: Any = None, /) -> Any:
     design = gc.load(f"profiles/{name}.toml").with_(changes or {})
-    return gc.build(design).study("dynamics")
+    return built(design).study("dynamics")
 
 
 @cache
@@ -75,7 +76,11 @@ def test_at_an_even_speed_a_mechanism_needs_the_moment_of_its_study_of_torque():
         ("loaded_nail_machine", {}),
         ("loaded_nail_machine", {"friction.rolling_mm": 0.02, "pair.backlash_mm": 0.0}),
         ("ellipse", {"load": [{"on": "wheel2", "formula": "8 - 9*cos(phi1)"}]}),
-        ("stepped_ellipse", {"load": [{"on": "wheel2", "torque_nm": 12}], "friction.flank": 0.1}),
+        pytest.param(
+            "stepped_ellipse",
+            {"load": [{"on": "wheel2", "torque_nm": 12}], "friction.flank": 0.1},
+            marks=pytest.mark.slow,
+        ),
         ("ring_uneven", {"load": [{"on": "wheel2", "formula": "0.5*omega2"}]}),
     ],
 )

@@ -392,7 +392,7 @@ def test_what_cannot_be_asked_is_refused(
 @pytest.mark.parametrize(
     "words",
     [
-        ["--count", "4", "--seed", "7", "--jobs", "1"],
+        ["--count", "2", "--seed", "7", "--jobs", "1"],
         pytest.param(["--quick", "--jobs", "2"], marks=pytest.mark.slow),
     ],
 )

@@ -97,7 +97,7 @@ def test_an_even_motor_has_the_torque_that_keeps_the_mean_speed():
 def test_the_largest_force_is_found_between_the_rows(changes):
     changes = changes | {"dynamics.turns": 2, "dynamics.steps": 180, "drive.speed_rpm": 186}
     run = motion_of(gc.build(gc.load("profiles/rattling_pair.toml").with_(changes)), silent)
-    fine = run.motion.ends[0] + np.radians(np.linspace(140.0, 200.0, 6001))
+    fine = run.motion.ends[0] + np.radians(np.linspace(140.0, 200.0, 1501))
     pressure = MovingPair(run.result, run.mesh_torque).loaded(fine).pressure
     assert np.nanmax(run.loaded.pressure) >= 0.999 * np.nanmax(pressure)
 
@@ -122,11 +122,7 @@ def test_teeth_that_part_hit_and_are_told():
     assert np.abs(found.columns["torque_mesh_nm"][contact == 0]).max() < 1e-9
     assert {"lag", "spectrum", "impacts"} <= set(found.charts)
     assert found.facts["dynamics.error.lag_arcsec"] < 1e-2
-    quiet = gc.build(
-        gc.load("profiles/rattling_pair.toml").with_(
-            {"load": LOAD, "drive.speed_rpm": 80, "motor": {}, "dynamics.turns": 1}
-        )
-    ).study("dynamics")
+    quiet = slow("circular", 0.1)
     assert "contact-lost" not in [one.code for one in quiet.study_findings]
 
 
