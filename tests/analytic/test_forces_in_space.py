@@ -17,6 +17,7 @@ from gearcam.spatial.envelope import touched
 from gearcam.spatial.friction import SpaceFrictionSpec
 from gearcam.spatial.guides import Straight
 from gearcam.spatial.loaded import RollerTouch
+from helpers_sampling import chosen
 
 CYLINDER = """
 kind = "cam"
@@ -312,19 +313,19 @@ def test_the_wall_above_is_the_wall_below_upside_down() -> None:
     assert speeds[0][:2] == pytest.approx(speeds[1][:2], rel=1e-6)
 
 
-def test_a_clockwise_cam_is_the_mirror_image() -> None:
-    for name in ("cone", "arm", "indexer"):
-        design = built(name, rubbing=True).design.with_({"forces.steps": 36})
-        one, other = (
-            gc.build(design.with_({"cam.rotation": way})).study("forces").columns
-            for way in ("ccw", "cw")
-        )
-        turned = ("pivot_thrust_n",) if name == "indexer" else ("guide_twist_nmm", "pivot_y_n")
-        for column in one:
-            sign = -1.0 if column in turned else 1.0
-            assert other[column] == pytest.approx(
-                sign * np.asarray(one[column]), rel=1e-12, nan_ok=True
-            ), column
+@pytest.mark.parametrize("name", chosen(["cone", "arm", "indexer"], "cone", "arm"))
+def test_a_clockwise_cam_is_the_mirror_image(name: str) -> None:
+    design = built(name, rubbing=True).design.with_({"forces.steps": 36})
+    one, other = (
+        gc.build(design.with_({"cam.rotation": way})).study("forces").columns
+        for way in ("ccw", "cw")
+    )
+    turned = ("pivot_thrust_n",) if name == "indexer" else ("guide_twist_nmm", "pivot_y_n")
+    for column in one:
+        sign = -1.0 if column in turned else 1.0
+        assert other[column] == pytest.approx(
+            sign * np.asarray(one[column]), rel=1e-12, nan_ok=True
+        ), column
 
 
 def test_a_turret_is_moved_by_all_rollers_that_are_on_the_cam() -> None:

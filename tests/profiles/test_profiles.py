@@ -104,7 +104,7 @@ ALL = EXPECTED | CAM_NUMBERS | MACHINE_NUMBERS
 FLAWED = {"undercut_cam"}
 """Cams that show what an error is."""
 
-LONG = {"globoidal_indexer"}
+LONG = {"globoidal_indexer", "ordered_drum"}
 """Whose numbers `tests/unit/spatial` and a witness prove of smaller cams."""
 
 FEWEST = 2

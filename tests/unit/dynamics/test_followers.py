@@ -151,7 +151,7 @@ def test_a_fourier_series_tells_the_same() -> None:
     assert y + states[0] == pytest.approx(places[0], abs=3e-9)
 
 
-@pytest.mark.parametrize("method", ["radau", "dop853"])
+@pytest.mark.parametrize("method", [pytest.param("radau", marks=pytest.mark.slow), "dop853"])
 def test_the_integration_keeps_to_the_periodic_motion(method: str) -> None:
     follower = replace(TRAIN, speed=1000.0 * RPM)
     periodic = Periodic(follower)

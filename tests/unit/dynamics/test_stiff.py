@@ -395,12 +395,12 @@ def random_machine(number: int) -> tuple[StiffPair, StiffState, float, list[floa
 
 
 def test_random_machines_balance_and_end():
-    _balance(range(20))
+    _balance(range(8))
 
 
 @pytest.mark.slow
 def test_many_random_machines_balance_and_end():
-    _balance(range(20, 320))
+    _balance(range(8, 320))
 
 
 def _balance(numbers: range) -> None:
