@@ -11,7 +11,7 @@ import os
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import lru_cache, partial
+from functools import partial
 from pathlib import Path as FilePath
 from typing import Any, Final
 
@@ -34,8 +34,8 @@ from gearcam.designs.kind import (
     variant_of,
 )
 from gearcam.designs.lines import Path, line_at, lines_of
-from gearcam.designs.nodes import Choice, Either, Keys, Many, Node, homes_of
-from gearcam.designs.parts import Reading
+from gearcam.designs.nodes import Choice, Either, Many, Node, homes_of
+from gearcam.designs.parts import Reading, of_nothing
 from gearcam.designs.reader import LARGEST, decoded, document_in, find_tables
 from gearcam.designs.slips import STRONG, SURE, did_you_mean, hinted, key_hint, keyed
 from gearcam.designs.table import Key, Table
@@ -468,7 +468,7 @@ def _examine_title(
         return
     if missing and title not in (*kind.required, *kind.nodes):
         given = tuple(reading.given.items())
-        if (part := _of_nothing(kind.table_in(document, title), given)) is not None:
+        if (part := of_nothing(kind.table_in(document, title), given)) is not None:
             outcome.parts[title] = part
             return
     node = kind.node(title, document)
@@ -479,22 +479,6 @@ def _examine_title(
     made = reading.read(node, document.get(title, empty), (title,))
     if made.clean:
         outcome.parts[title] = made.part
-
-
-@lru_cache(maxsize=512)
-def _of_nothing(table: Table, given: tuple[tuple[str, str], ...]) -> Any:
-    """Return what a table makes that is left out; None if it must not be, or makes nothing."""
-    reading = Reading(
-        document={},
-        given=dict(given),
-        words=dict[str, Any],
-        home=lambda *_: "",
-        far=lambda _: "",
-        filled=lambda _, raw, __: (raw, []),
-        faults=[],
-    )
-    made = reading.read(Keys(table=table), {}, (table.title,))
-    return made.part if made.clean else None
 
 
 def _missing(node: Node, title: str) -> Fault:

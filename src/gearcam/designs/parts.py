@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache, partial
 from typing import Any, NamedTuple
 
 from gearcam.base.quantities import OPPOSITES
@@ -196,6 +196,35 @@ class Reading:
             part, more = parameters_of(table, make, written, faults, at)
             problems += more
         return part, problems
+
+
+@lru_cache(maxsize=512)
+def of_nothing(table: Table, given: tuple[tuple[str, str], ...]) -> Any:
+    """Return what a table makes that is left out.
+
+    Parameters
+    ----------
+    table : Table
+        The table.
+    given : tuple of (str, str)
+        The circumstances.
+
+    Returns
+    -------
+    object
+        The part of the design; None if the table must not be left out.
+    """
+    reading = Reading(
+        document={},
+        given=dict(given),
+        words=dict[str, Any],
+        home=lambda *_: "",
+        far=lambda _: "",
+        filled=lambda _, raw, __: (raw, []),
+        faults=[],
+    )
+    made = reading.read(Keys(table=table), {}, (table.title,))
+    return made.part if made.clean else None
 
 
 def _slip(node: Choice, raw: Mapping[str, Any]) -> str:

@@ -133,7 +133,7 @@ def _values(
             content=entry.number(content),
             default=default,
             zero_is_none=entry.param.zero_is_none,
-            wrong=not wrong.isdisjoint([(), (key,), path]),
+            wrong=bool(wrong) and not wrong.isdisjoint([(), (key,), path]),
             contents=contents,
         )
     return values
