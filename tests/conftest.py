@@ -11,5 +11,4 @@ def pytest_collection_finish() -> None:
     """Leave the tests that were collected out of each collection of garbage."""
     gc.collect()
     gc.freeze()
-    gc.set_threshold(10_000, 20, 20)  # seldom: tests leave few cycles
     gc.enable()

@@ -65,6 +65,7 @@ def test_by_finite_elements_a_slow_pair_lags_as_in_the_study_of_stress():
     assert "E 206000" in str(result.study("dynamics").facts["dynamics.material"])
 
 
+@pytest.mark.slow
 def test_stiff_teeth_move_as_rigid_ones():
     motor = {"type": "linear", "start_torque_nm": 3000, "idle_rpm": 120}
     own = {
