@@ -30,6 +30,7 @@ from gearcam.base.errors import InfeasibleError
 from gearcam.base.facts import Fact, Facts
 from gearcam.base.findings import Finding
 from gearcam.base.numerals import FEW, formatted, shortened
+from gearcam.base.quantities import size_pattern
 
 UNITS: Final = ("mm", "inch")
 """What ``units`` may be."""
@@ -70,9 +71,6 @@ _MEASURE: Final = re.compile(
     r" (?P<unit>[mu]m[23]?(?:/(?:s|min|rad|deg)\d?)?)(?![\w/])"
 )
 """Numbers with a unit of length behind them."""
-
-_FIT: Final = rf"({_NUMBER})(\s*[A-Za-z]{{1,2}}\d{{1,2}})"
-"""A size with a tolerance class, such as 25 H7."""
 
 _UNIT: Final = re.compile(r"(mm|um|1(?=/mm))([23]?)(?:/mm(\d?)|((?:/.*)?))")
 _ENDS: Final = re.compile(rf"from ({_NUMBER}) to ({_NUMBER}) mm")
@@ -129,7 +127,7 @@ def each(value: Any, change: Callable[[float], float]) -> Any:
         return [each(one, change) for one in value]
     if hasattr(value, "tolerance_class"):
         value = str(value)
-    if isinstance(value, str) and (fit := re.fullmatch(_FIT, value.strip())):
+    if isinstance(value, str) and (fit := re.fullmatch(size_pattern(), value.strip())):
         return repr(change(float(fit[1]))).removesuffix(".0") + fit[2]
     if isinstance(value, bool) or not isinstance(value, int | float):
         return value
@@ -280,7 +278,9 @@ def telling(units: str) -> Iterator[None]:
 def text_in(text: str) -> str:
     """Return a text with its keys and lengths in inches; limits stay on their side."""
     text = text.replace(_IN_INCHES, "")
-    text = re.sub(f'"{_FIT}"', lambda size: f'"{formatted(float(size[1]) / INCH)}{size[2]}"', text)
+    text = re.sub(
+        f'"{size_pattern()}"', lambda size: f'"{formatted(float(size[1]) / INCH)}{size[2]}"', text
+    )
     text = _SET.sub(_set_in, text)
     text = _MEASURE.sub(_measured_in, text)
     return re.sub(r"\bin mm\b", "in inches", key_in(text))

@@ -31,6 +31,15 @@ else:
     RowOfSome = tuple[float | Solve, ...]
 """Numbers as a list, a tuple or an array, kept as a tuple; in the second some may be solved for."""
 
+
+def size_pattern(letters: str = "[A-Za-z]{1,2}") -> str:
+    """Return the pattern of a size with a class, such as 25 H7, of some `letters`.
+
+    Its groups are the size, the class with blanks, the letters and the grade.
+    """
+    return rf"(\d+(?:\.\d*)?|\.\d+)(\s*({letters})\s*(\d{{1,2}}))"
+
+
 REQUIRED: Final = dataclasses.MISSING
 """Default of required parameters."""
 

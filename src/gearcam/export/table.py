@@ -1,7 +1,7 @@
 r"""Tables: columns of numbers, and of texts, as CSV.
 
 Numbers are written as `numerals.exact` gives them, with the fewest digits that read back as the
-same double; the radius of a straight part is ``inf``; what a masked array masks does not exist and
+same double, whole ones of a column of integers without a point; the radius of a straight part is ``inf``; what a masked array masks does not exist and
 is left empty; lines end in ``\n``. Refused: other numbers that are not finite, columns of different
 lengths, names that would need quotes.
 """
@@ -72,7 +72,7 @@ def table_bytes(columns: Mapping[str, ArrayLike], full: Mapping[str, str] | None
     lengths = {name: len(values) for name, values in arrays.items()}
     if len(set(lengths.values())) > 1:
         raise ValueError(f"columns have different lengths: {lengths}")
-    tidy = []
+    tidy: list[list[float | None]] = []
     for name, plain in arrays.items():
         # asked for so, since numpy.ma takes as long to load as a table to write
         missing = np.broadcast_to(np.ravel(getattr(columns[name], "mask", False)), plain.shape)
@@ -83,10 +83,16 @@ def table_bytes(columns: Mapping[str, ArrayLike], full: Mapping[str, str] | None
         # One infinity, one zero: a straight part has no side, and -0.0 says nothing.
         # What is missing may be anything, and adding to it may warn.
         there = _exact(np.where(missing, 0.0, plain) + 0.0)
-        tidy.append(np.where(missing, np.nan, np.where(np.isinf(there), np.inf, there)))
+        there = np.where(missing, np.nan, np.where(np.isinf(there), np.inf, there))
+        if np.asarray(columns[name]).dtype.kind in "iub":
+            tidy.append(np.where(missing, None, plain.astype(int).astype(object)).tolist())
+        else:
+            tidy.append(there.tolist())
     # written in one go, a list of lists has its numbers as `repr` gives each of them
-    rows = repr(np.column_stack(tidy).tolist())[1:-1]
-    for mark, other in (("], ", ""), ("[", "\n"), ("]", ""), (", ", ","), ("nan", "")):
+    rows = repr([*map(list, zip(*tidy, strict=True))])[1:-1]
+    for mark, other in (
+        ("], ", ""), ("[", "\n"), ("]", ""), (", ", ","), ("nan", ""), ("None", "")
+    ):  # fmt: skip
         rows = rows.replace(mark, other)
     return (",".join(arrays) + rows + "\n").encode("ascii")
 

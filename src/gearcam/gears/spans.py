@@ -27,6 +27,7 @@ from gearcam.gears.outline import Outline
 from gearcam.gears.pins import SIDES, flank_ends
 from gearcam.gears.track import Frames
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
+from gearcam.numeric.roots import damped_newton
 
 _CELLS: Final = 1024
 """Cells of a centrode in the search, beside those that its knots divide."""
@@ -34,9 +35,8 @@ _CELLS: Final = 1024
 _SLACK: Final = 1.5
 """Factor on how far the conditions may change within a cell."""
 
-_STEPS, _SMALL = 12, 1e-14
-"""Steps of Newton's method, of which six suffice, and the length of its last, over that of the
-centrode."""
+_SMALL: Final = 1e-11
+"""Length of the last step of a search for a root, over twice its cell."""
 
 _NEAR: Final = 4.0
 """Distance from the middle of its cell at which a root is of another one, in cells."""
@@ -272,28 +272,29 @@ def _rocked(toothing: Toothing, rolls: Array) -> Array:
     return 0.5 * (sizes - np.abs(frames.p[0] - frames.p[1]))
 
 
-def _common_normals(toothing: Toothing, rolls: Array, longest: Array) -> tuple[Array, Mask]:
-    """Return rolls (2, n), mm, of common normals, by Newton steps, and whether they are exact."""
+def _common_normals(toothing: Toothing, rolls: Array, cells: Array) -> tuple[Array, Mask]:
+    """Return rolls (2, n), mm, of common normals in `cells` of a size, and whether they are exact.
+
+    The third unknown is the chord.
+    """
     track, alpha, sense = toothing.track.exact, toothing.cutter.alpha, -toothing.turn.imag
     lean = math.sin(alpha) * toothing.turn
 
-    def conditions(rolls: Array) -> tuple[Frames, Plane, Array, Plane]:
-        frames = track.frames(track.angle(rolls))
+    def conditions(x: Array, _: Ints) -> tuple[Mask, Array, Array]:
+        frames = track.frames(track.angle(x[:2]))
         normal = frames.t[1] * (math.cos(alpha) - lean)
         angle = sense * np.angle(frames.t[0] * (math.cos(alpha) + lean) / normal)
-        return frames, normal, angle, np.conj(normal) * (frames.p[0] - frames.p[1])
+        chord = np.conj(normal) * (frames.p[0] - frames.p[1])
+        # by the rolls a and b
+        slopes = np.conj(normal) * frames.t * SIDES
+        slopes[1] -= 1j * sense * frames.kappa[1] * chord
+        by_rolls = np.stack([slopes.real, slopes.imag, frames.kappa * SIDES])
+        exact = (np.abs(angle) <= _EXACT) & (np.abs(chord.imag) <= _EXACT * toothing.length)
+        matrix = np.pad(by_rolls, ((0, 0), (0, 1), (0, 0)))
+        matrix[0, 2] = -1.0  # by the chord
+        misses = np.stack([chord.real - x[2], chord.imag, angle])
+        return exact & (chord.real > 0.0), misses, matrix
 
-    for _ in range(_STEPS):
-        frames, normal, angle, chord = conditions(rolls)
-        aside, along = chord.imag, (np.conj(normal) * frames.t).imag
-        (p, q), r = frames.kappa * SIDES, along[0]
-        u = -along[1] - sense * frames.kappa[1] * chord.real
-        with np.errstate(divide="ignore", invalid="ignore"):
-            move = np.stack([q * aside - u * angle, r * angle - p * aside]) / (p * u - q * r)
-        move = np.where(np.isfinite(move), np.clip(move, -longest, longest), 0.0)
-        rolls = rolls + move
-        if np.abs(move).max(initial=0.0) <= _SMALL * toothing.length:
-            break
-    _, _, angle, chord = conditions(rolls)
-    exact = (np.abs(angle) <= _EXACT) & (np.abs(chord.imag) <= _EXACT * toothing.length)
-    return rolls, exact & (chord.real > 0.0)
+    start = np.append(rolls, np.zeros_like(rolls[:1]), axis=0)
+    found, exact = damped_newton(conditions, start, 0.5 / cells.max(axis=0), _SMALL)
+    return found[:2], exact

@@ -20,7 +20,7 @@ from typing import Any, Final, Self
 
 from gearcam.base.errors import DesignError
 from gearcam.base.numerals import formatted
-from gearcam.base.quantities import params_of
+from gearcam.base.quantities import params_of, size_pattern
 
 _SIZES: Final = (3, 6, 10, 18, 30, 50, 80, 120, 180, 250, 315, 400, 500)
 """Ends of the ranges of sizes, mm: over the one before, up to and including this."""
@@ -82,10 +82,9 @@ _LARGEST: Final = 500.0
 _SMALLEST: Final = 1.0
 """Sizes, mm, for which there are limits."""
 
-_SIZE: Final = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*([A-Za-z]{1,2})\s*(\d{1,2})\s*", re.ASCII)
+_SIZE: Final = re.compile(rf"\s*{size_pattern()}\s*", re.ASCII)
 
-
-HOLE: Final = r"^\s*(\d+(\.\d*)?|\.\d+)\s*(JS|[DEFGHKMNPRS])\s*\d{1,2}\s*$"
+HOLE: Final = rf"^\s*{size_pattern('JS|[DEFGHKMNPRS]')}\s*$"
 """Pattern of the size of a hole for a schema, which does not look at its number."""
 
 
@@ -126,8 +125,8 @@ class FitSize(float):
             what = f"{text!r} is not a size with a tolerance class"
             raise DesignError.of(what, allowed='such as "25 H7"')
         made = super().__new__(cls, found[1])
-        made.tolerance_class = f"{found[2]}{int(found[3])}"
-        low, high = _limits(float(made), found[2], int(found[3]))
+        made.tolerance_class = f"{found[3]}{int(found[4])}"
+        low, high = _limits(float(made), found[3], int(found[4]))
         made.lower, made.upper = low / 1000.0, high / 1000.0
         return made
 
@@ -204,11 +203,11 @@ def hole_problem(text: str) -> tuple[str, str, str]:
     found = _SIZE.fullmatch(text)
     if found is None:
         return "", "", ""
-    letter, grade = found[2].upper(), int(found[3])
-    if found[2] not in GRADES or not found[2][0].isupper():
-        what = f"{found[2]} is no letter of a hole that is known"
-        if found[2].islower() and letter in GRADES:
-            what = f"{found[2]}{grade} is the class of a shaft, and this is a hole"
+    letter, grade = found[3].upper(), int(found[4])
+    if found[3] not in GRADES or not found[3][0].isupper():
+        what = f"{found[3]} is no letter of a hole that is known"
+        if found[3].islower() and letter in GRADES:
+            what = f"{found[3]}{grade} is the class of a shaft, and this is a hole"
         allowed = ", ".join(one for one in GRADES if one[0].isupper())
         near = _near_class(letter, grade)
         return what, f"a letter of {allowed}", f"{found[1]} {near}"

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from gearcam.pictures.drawings import Drawing
     from gearcam.sheets.paper import Heading, Values
     from gearcam.sheets.sheet import Sheet
-    from gearcam.sheets.wheel import Sense
+    from gearcam.sheets.wheel import Sense, Teeth
 
 Measured = dict[str, Any]
 """Facts measured on files, by group."""
@@ -100,6 +100,11 @@ class PartsResult(Result):
     def plates(self) -> tuple[Drawing, ...]:
         """A drawing of each plate that is cut, in its own frame."""
 
+    @property
+    def printed(self) -> tuple[Drawing, ...]:
+        """The plates with their pitch curves."""
+        return self.plates
+
     @cached_property
     @abstractmethod
     def drawing(self) -> Drawing:
@@ -151,23 +156,50 @@ class PartsResult(Result):
     @cached_property
     def sheets(self) -> tuple[Sheet, ...]:
         """The workshop drawings."""
-        from gearcam.sheets.paper import sheet_rows
         from gearcam.sheets.part import part_sheet
         from gearcam.sheets.wheel import check_runout
 
-        facts = self.facts
         check_runout(self.design.drawing, self.parts)
         with files_in(self.design.files_in):
             return tuple(
                 part_sheet(
                     part,
-                    sheet_rows(facts, self.rows_of(number)),
+                    self.data(number),
                     self.heading(number),
                     turning=self.turning(number),
+                    teeth=self.teeth(number),
                     values=self.values(number),
+                    notes=self.notes(number),
                 )
                 for number, part in enumerate(self.parts)
             )
+
+    def data(self, number: int) -> dict[str, str]:
+        """Return the table of data on the drawing of the part of a `number` from 0."""
+        from gearcam.sheets.paper import sheet_rows
+
+        return sheet_rows(self.facts, self.rows_of(number))
+
+    def notes(self, number: int) -> list[str]:
+        """Return notes on the drawing of the part of a `number` from 0: the file of its outline."""
+        from gearcam.base.inches import file_unit
+        from gearcam.sheets.sheet import fine
+
+        unit = file_unit().name
+        part, output = self.parts[number], self.design.output
+        steps = len(part.contours)
+        file = f"{part.name}.dxf"
+        if steps > 1:
+            file = f"{part.name}_step1.dxf to {part.name}_step{steps}.dxf"
+        if "dxf" not in output.files:
+            file += " (not written with this drawing)"
+        elif output.kerf:
+            file += f", moved by half the kerf of {fine(output.kerf)} {unit}"
+        return [f"Outline: {file}, chord tolerance {fine(part.tolerance)} {unit}."]
+
+    def teeth(self, number: int) -> Teeth | None:  # noqa: ARG002
+        """Return the teeth of the part of a `number` from 0, if it has some."""
+        return None
 
     def turning(self, number: int) -> Sense | None:  # noqa: ARG002
         """Return how the part of a `number` from 0 turns, if its drawing shows it."""
@@ -402,7 +434,7 @@ def _print_pdf(result: PartsResult, _: Measured) -> Files:
 
     name = result.design.name
     return {
-        f"{one.name}_print.pdf": sheet_pdf(tiles(one, name), name, WINDOW) for one in result.plates
+        f"{one.name}_print.pdf": sheet_pdf(tiles(one, name), name, WINDOW) for one in result.printed
     }
 
 

@@ -78,6 +78,9 @@ def callouts(board: Board, wheel: Wheel, side: float) -> None:
     for mark in part.marks:
         words = f"{diameter_text(mark.diameter)}, {length_text(mark.depth)} deep"
         board.callout(mark.edge, f"mark {words}", "label", row=("mark", words))
+        board.rows.append(("mark, centre", position(mark.center - wheel.origin)))
+    if part.arrow is not None:
+        board.rows.append(("arrow, place by the DXF", f"{length_text(part.arrow.depth)} deep"))
 
 
 def _radii(board: Board, wheel: Wheel) -> None:
@@ -86,6 +89,8 @@ def _radii(board: Board, wheel: Wheel) -> None:
     teeth = true_points(wheel.part.inner[-1:]) if wheel.part.inner else wheel.points
     reach = np.abs(teeth)
     for radius, word in ((float(reach.max()), "max"), (float(reach.min()), "min")):
+        if abs(radius - wheel.tips) < SAME:
+            continue  # a diameter
         # the first of the points on an arc about the axis, not one that rounding chooses
         point = complex(teeth[np.argmax(np.abs(reach - radius) < SAME)])
         circle, words = Circle(center=0j, diameter=2.0 * radius), f"(R{length_text(radius)} {word})"
@@ -114,8 +119,12 @@ def _holes(board: Board, part: Part, origin: complex) -> None:
     for group in patterns:
         _pattern(board, group)
     for hole, words in named:
-        at = hole.center - origin
-        board.rows.append((words, f"X {length_text(at.real)}  Y {length_text(at.imag)}"))
+        board.rows.append((words, position(hole.center - origin)))
+
+
+def position(place: complex) -> str:
+    """Return a `place` as text of a table."""
+    return f"X {length_text(place.real)}  Y {length_text(place.imag)}"
 
 
 def hole_text(hole: Circle) -> str:

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Final
 
 from gearcam.base.inches import file_unit
@@ -21,9 +21,9 @@ from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Hub, Part, ScrewHole
 from gearcam.parts.shafts import keyway_of
 from gearcam.parts.shapes import Circle, Loop, extremes
-from gearcam.pictures.drawings import box, part_features, place, placed
+from gearcam.pictures.drawings import CENTRODE, box, part_features, place, placed
 from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board
-from gearcam.sheets.callouts import callouts, frames, thread, turning_arrow
+from gearcam.sheets.callouts import callouts, frames, position, thread, turning_arrow
 from gearcam.sheets.dimensions import Measure, diameter_text
 from gearcam.sheets.paper import NO_VALUES, Heading, Values, begin, finish
 from gearcam.sheets.sheet import (
@@ -38,7 +38,7 @@ from gearcam.sheets.sheet import (
     text_width,
 )
 from gearcam.sheets.symbols import datum, section_letters, section_line
-from gearcam.sheets.wheel import SAME, UP, Sense, Unrolled, Wheel, floor_of, holes_of
+from gearcam.sheets.wheel import SAME, UP, Sense, Teeth, Unrolled, Wheel, floor_of, holes_of
 
 LEFT: Final = 24.0
 BETWEEN: Final = 34.0
@@ -60,8 +60,10 @@ def part_sheet(
     heading: Heading,
     *,
     turning: Sense | None = None,
+    teeth: Teeth | None = None,
     values: Values = NO_VALUES,
     unrolled: Unrolled | None = None,
+    notes: Sequence[str] = (),
 ) -> Sheet:
     """Return the sheet of a part.
 
@@ -75,10 +77,14 @@ def part_sheet(
         What the title block says.
     turning : Sense, optional
         How a cam turns.
+    teeth : Teeth, optional
+        Of a wheel, or of a rack.
     values : Values
         A second table.
     unrolled : Unrolled, optional
         What is shown of a cam in space, of which the part is the blank.
+    notes : sequence of str
+        What the notes say besides, such as the file of the outline.
 
     Returns
     -------
@@ -90,7 +96,7 @@ def part_sheet(
     InfeasibleError
         If the part is too large for the smallest scale.
     """
-    wheel = Wheel(part=part, unrolled=unrolled)
+    wheel = Wheel(part=part, teeth=teeth, unrolled=unrolled)
     size = wheel.high - wheel.low + part.thickness + (2.0 * wheel.radius if wheel.keyed else 0.0)
     levels = max(1 + len(part.bosses) + len(part.recesses), 1 + wheel.placed)
     below = BELOW + FIRST_LEVEL + LEVEL * levels
@@ -116,25 +122,26 @@ def part_sheet(
     _section_sizes(board, wheel, side)
     if turning is not None:
         turning_arrow(board, wheel, turning)
+    if teeth is not None:
+        at = position(teeth.first - wheel.origin)
+        board.label(teeth.first, "tooth 1", ("tooth 1, tip", at))
     section_letters(board, wheel.plane, wheel.low.imag, wheel.high.imag)
     callouts(board, wheel, side)
     frames(board, wheel, heading, side)
-    return finish(board, heading, facts, _notes(wheel), values)
+    return finish(board, heading, facts, [*_notes(wheel), *notes], values)
 
 
 def _notes(wheel: Wheel) -> list[str]:
-    part, chamfer, name = wheel.part, wheel.part.chamfer, file_unit().name
+    part, chamfer = wheel.part, wheel.part.chamfer
     about = " R, X, Y from the axis; angles from x, to the right." if wheel.turns else ""
-    if not wheel.turns and holes_of(part):
+    if not wheel.turns and (holes_of(part) or part.marks):
         side = "left" if wheel.origin.real == wheel.low.real else "right"
         about = f" X, Y from the {'cross' if wheel.placed else f'lower {side} corner'}."
     return [
         *([f"Chamfer {length_text(chamfer)} x 45 deg on both faces."] if chamfer else []),
         *(["Holes go right through."] if holes_of(part) else []),
         f"All sizes are finished sizes.{about}",
-        wheel.unrolled.note
-        if wheel.unrolled
-        else f"Outline: DXF file of this part, chord tolerance {fine(part.tolerance)} {name}.",
+        *([wheel.unrolled.note] if wheel.unrolled else []),
     ]
 
 
@@ -146,6 +153,8 @@ def _front_view(board: Board, wheel: Wheel) -> None:
     if part.hub is not None:
         circle = Circle(center=0j, diameter=part.hub.diameter)
         board.draw(EDGE if part.hub.front > 0.0 else HIDDEN, circle)
+    if wheel.teeth is not None:
+        board.draw(CENTRODE, wheel.teeth.pitch)
     low, high, over = wheel.low, wheel.high, OVERHANG * board.unit
     if wheel.turns:
         board.line(CENTERLINE, low.real - over, high.real + over)
@@ -156,7 +165,10 @@ def _front_sizes(board: Board, wheel: Wheel) -> None:
     left, low, right, high = extremes(wheel.points)
     # sizes of an outline that its file defines are for reference, as those of a profile are
     across, up = ([Measure(*ends, aside=wheel.turns)] for ends in ((left, right), (low, high)))
-    if wheel.round:
+    if wheel.tips and not wheel.part.inner:
+        words = diameter_text(2.0 * wheel.tips)
+        across, up = [Measure(-wheel.tips, wheel.tips, words)], []
+    elif wheel.round:
         across, up = [Measure(left, right, diameter_text((right - left).real))], []
     elif wheel.placed:
         near = left if abs(wheel.low.real) < abs(wheel.high.real) else right
@@ -185,6 +197,7 @@ def _section(board: Board, wheel: Wheel, left: float) -> None:
     over = OVERHANG * board.unit
     near = [c for c in holes_of(part) if abs(c.center.real - wheel.plane) < 0.5 * c.diameter]
     middles = [*([0.0] if wheel.turns else []), *(circle.center.imag for circle in near)]
+    middles += [y for y, *_ in wheel.cut_teeth]
     for y in middles:
         board.line(CENTERLINE, complex(left - over, y), complex(end + over, y))
     if wheel.keyed is not None:
@@ -242,6 +255,8 @@ def _section_sizes(board: Board, wheel: Wheel, left: float) -> None:
     board.measure(lengths, base)
     plain = wheel.bore and wheel.keyed is None
     beside = [_upright(end, wheel.radius, wheel.bore_text)] if plain else []
+    if wheel.tips and part.inner:
+        beside.append(_upright(end, wheel.tips, diameter_text(2.0 * wheel.tips)))
     if part.hub is not None:
         words = diameter_text(hub.diameter)
         if hub.front:

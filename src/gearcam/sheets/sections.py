@@ -25,6 +25,9 @@ from gearcam.parts.shapes import Circle
 
 _NONE: Final = np.empty(0)
 
+_PAST_ROOT: Final = 0.6
+"""Distance from the middle of a tooth up to which metal ends at it, in heights of the tooth."""
+
 
 def crossings(edge: Edge, x: float, tolerance: float) -> Array:
     """Return where an `edge`, with chords within a `tolerance`, crosses the plane at `x`: y, mm."""
@@ -32,21 +35,29 @@ def crossings(edge: Edge, x: float, tolerance: float) -> Array:
         square = 0.25 * edge.diameter**2 - (x - edge.center.real) ** 2
         return edge.center.imag + math.sqrt(square) * np.array([-1.0, 1.0]) if square > 0 else _NONE
     points = edge.polyline(tolerance)
-    ends = np.roll(points, -1)
-    over = (points.real > x) != (ends.real > x)
-    first, last = points[over], ends[over]
+    return chain_crossings(np.append(points, points[:1]), x)
+
+
+def chain_crossings(points: Plane, x: float) -> Array:
+    """Return where a chain of `points` crosses the plane at `x`: y, mm."""
+    over = np.flatnonzero(np.diff(points.real > x))
+    first, last = points[over], points[over + 1]
     share = (x - first.real) / (last.real - first.real)
     return np.sort(first.imag + share * (last.imag - first.imag))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Section:
-    """The section of layers less pockets with the plane at `x`, mm, to a chord `tolerance`."""
+    """The section of layers less pockets with the plane at `x`, mm, to a chord `tolerance`.
+
+    Of `teeth` it has the roots and the tips there, y, mm: they are shown whole (ISO 2203).
+    """
 
     layers: Sequence[Layer]
     pockets: Sequence[Layer]
     x: float
     tolerance: float
+    teeth: Sequence[tuple[float, float]] = ()
 
     @cached_property
     def heights(self) -> list[float]:
@@ -82,8 +93,13 @@ class Section:
 
         outlines = [one.edge.polyline(self.tolerance) for one in layers]
         seen = np.concatenate([*(one.imag[one.real >= self.x] for one in outlines), _NONE])
-        extent = np.array([seen.min(), seen.max()]) if len(seen) else _NONE
-        return _ends_of(within(layers) & ~within(pockets), ends), extent
+        metal = _ends_of(within(layers) & ~within(pockets), ends)
+        for root, tip in self.teeth:
+            of_tooth = np.abs(metal - 0.5 * (root + tip)) < _PAST_ROOT * abs(root - tip)
+            metal = np.where(of_tooth, root, metal)
+            seen = np.append(seen, tip if of_tooth.any() else [])
+        metal = metal.reshape(-1, 2)[np.diff(metal)[::2] > 0.0].ravel()
+        return metal, np.array([seen.min(), seen.max()]) if len(seen) else _NONE
 
     @property
     def metal(self) -> list[Plane]:
@@ -98,7 +114,8 @@ class Section:
     def lines(self) -> Iterator[tuple[complex, complex]]:
         """All visible edges, from point to point, z and y, mm."""
         for (low, high), (ends, extent) in zip(pairwise(self.heights), self.slabs, strict=True):
-            for y in np.union1d(ends, extent).tolist():
+            tips = [tip for root, tip in self.teeth if root in ends]
+            for y in np.unique([*ends, *extent, *tips]).tolist():
                 yield low + 1j * y, high + 1j * y
         nothing = _NONE, _NONE
         pairs = pairwise([nothing, *self.slabs, nothing])

@@ -19,9 +19,9 @@ from gearcam.numeric.arrays import Plane, bounds
 from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Bevel, Opening, Part, ScrewHole
 from gearcam.parts.shapes import Circle, Loop, true_points
-from gearcam.pictures.drawings import BORE, HOLE, Drawing, placed
+from gearcam.pictures.drawings import BORE, HOLE, Drawing, Path, chains, placed
 from gearcam.sheets.dimensions import diameter_text
-from gearcam.sheets.sections import Section, crossings
+from gearcam.sheets.sections import Section, chain_crossings, crossings
 from gearcam.sheets.sheet import fine, length_text
 from gearcam.sheets.spec import DrawingNotes
 
@@ -40,6 +40,35 @@ class Sense:
 
     zero: float
     clockwise: bool
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Teeth:
+    """The teeth of a wheel, in its frame.
+
+    Parameters
+    ----------
+    pitch, root, tip : Path
+        Its pitch curve, and the parallels of that at the roots and the tips.
+    first : complex, mm
+        Middle of the tip of tooth 1.
+    """
+
+    pitch: Path
+    root: Path
+    tip: Path
+    first: complex
+
+    def at(self, x: float) -> list[tuple[float, float, float]]:
+        """Return where the plane at `x` crosses pitch curve, roots and tips: y, mm."""
+        ways = []
+        for path in (self.pitch, self.root, self.tip):
+            ((points, closed),) = chains(path, 0.0)
+            ways.append(chain_crossings(np.append(points, points[:1]) if closed else points, x))
+        # where it runs along them it crosses some of them only
+        if len({len(found) for found in ways}) > 1:
+            return []
+        return [(y, root, tip) for y, root, tip in zip(*map(np.ndarray.tolist, ways), strict=True)]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -72,6 +101,7 @@ class Wheel:
     """
 
     part: Part
+    teeth: Teeth | None = None
     unrolled: Unrolled | None = None
 
     @cached_property
@@ -102,6 +132,15 @@ class Wheel:
             return False
         turn = float(np.angle(np.roll(corners, -1) / corners).sum())
         return abs(turn) > math.pi
+
+    @cached_property
+    def tips(self) -> float:
+        """Radius of the circle about the axis on which the tips of a wheel lie; 0 without one."""
+        pitch = self.teeth.pitch if self.teeth else None
+        if pitch is None or not pitch.closed or np.ptp(np.abs(pitch.points)) > SAME:
+            return 0.0
+        inner = self.part.inner[-1:]
+        return float(np.abs(true_points(inner)).min() if inner else np.abs(self.points).max())
 
     @property
     def placed(self) -> bool:
@@ -186,7 +225,18 @@ class Wheel:
             part = replace(part, openings=tuple(others))
         # a note states chamfers; a set screw is turned into the plane
         pockets = [one for one in part.pockets if not isinstance(one, Bevel | ScrewHole)]
-        return Section(layers=part.layers, pockets=pockets, x=self.plane, tolerance=part.tolerance)
+        return Section(
+            layers=part.layers,
+            pockets=pockets,
+            x=self.plane,
+            tolerance=part.tolerance,
+            teeth=[(root, tip) for _, root, tip in self.cut_teeth],
+        )
+
+    @cached_property
+    def cut_teeth(self) -> list[tuple[float, float, float]]:
+        """Where the plane crosses pitch curve, roots and tips (see `Teeth.at`)."""
+        return self.teeth.at(self.plane) if self.teeth else []
 
 
 def check_runout(notes: DrawingNotes, parts: Sequence[Part]) -> None:

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearcam.base.errors import InfeasibleError
-from gearcam.base.inches import file_unit
 from gearcam.cams.caliper import caliper, lowered, wheel
 from gearcam.kinds.shared import steps_of_turn
 
@@ -17,11 +16,8 @@ if TYPE_CHECKING:
     from gearcam.kinds.cam.result import CamResult
     from gearcam.numeric.arrays import Array
 
-SHEET_STEP: Final = math.radians(15.0)
-"""Step of the angle in the table on a sheet, rad."""
-
-_ROWS: Final = 24
-"""Steps of the height in the table on the sheet of a plate, as many as of the angle."""
+_ROWS: Final = 36
+"""Largest number of steps in the table on a sheet."""
 
 _DECIMALS: Final = 9
 """Decimals of lengths in mm: beyond what is measured, and without the noise of rounding."""
@@ -75,15 +71,14 @@ def sheet_table(result: CamResult, number: int) -> Table:
     Returns
     -------
     dict of str to (n,) array
-        Radii every 15 deg, or up to 24 heights, of the walls of the part (see `caliper_table`).
+        Rows of `caliper_table`, of the walls of the part: all, or every second and so on.
     """
-    if result.carrier.around:
-        return caliper_table(result, SHEET_STEP, number)
-    size = file_unit().size
-    period = result.program.period / size
-    step = 10.0 ** math.floor(math.log10(period / _ROWS))
-    step *= next(one for one in (1.0, 2.0, 5.0, 10.0) if one * step * _ROWS >= period)
-    return caliper_table(result, size * step, number)
+    output: Any = result.design.output
+    step, whole = output.caliper_step, 2.0 * math.pi
+    if not result.carrier.around:
+        step, whole = output.height_step, result.program.period
+    every = max(1, math.ceil(whole / (_ROWS * step) - _ROUNDING))
+    return caliper_table(result, every * step, number)
 
 
 def _heights(walls: Sequence[Any], step: float) -> Table:

@@ -333,6 +333,13 @@ class CamResult(MadeCam):
         study = self.kind.studies["follow"]
         return study.compute(self, progress or silent, profile=profile, wall=wall, fit=fit)
 
+    def notes(self, number: int) -> list[str]:
+        """Return notes with the file of the radii, if it is written (see `PartsResult.notes`)."""
+        notes = super().notes(number)
+        if "caliper" in self.design.output.files:
+            notes.append(f"{'Radii' if self.carrier.around else 'Heights'}: caliper.csv.")
+        return notes
+
     def values(self, number: int) -> Values:
         """Return the radii, or the heights of a plate, of a part (see `PartsResult.values`)."""
         from gearcam.sheets.paper import Values

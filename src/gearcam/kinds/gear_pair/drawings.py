@@ -26,11 +26,15 @@ _POINTS: Final = 720
 """Intervals of a centrode that is drawn."""
 
 
-def centrode_path(gear: Gear, end: float) -> Path:
-    """Return the centrode of a `gear` as a chain in its own frame, to the driver angle `end`."""
+def centrode_path(gear: Gear, end: float, away: float = 0.0) -> Path:
+    """Return the centrode of a `gear` as a chain in its own frame, to the driver angle `end`.
+
+    Or its parallel that is `away` from it towards the tips, mm.
+    """
     closed = gear.toothing.closed
     phi1 = np.linspace(0.0, end, _POINTS + 1)[: -1 if closed else None]
-    return Path(points=gear.toothing.frames(phi1).p, closed=closed)
+    frames = gear.toothing.frames(phi1)
+    return Path(points=frames.p + away * gear.toothing.turn * frames.t, closed=closed)
 
 
 def pair_drawing(

@@ -289,7 +289,7 @@ class MadePair(PartsResult):
         """Return the names of the facts in the table of a wheel's drawing, by its `number`."""
         from gearcam.kinds.gear_pair.sheet import wheel_rows
 
-        return wheel_rows(number)
+        return wheel_rows(number, self.facts)
 
     @cached_property
     def error_rows(self) -> Estimates:

@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from gearcam.gears.contact import FlankPairs
     from gearcam.pictures.drawings import Drawing, Path
     from gearcam.sheets.sheet import Sheet
+    from gearcam.sheets.wheel import Teeth
 
 Side = Literal["drive", "coast"]
 """Flanks of the driver: the driving side and the coast side."""
@@ -113,17 +114,51 @@ class GearPairResult(MadePair):
         """The assembled pair, beside the cutting paths."""
         return (self.drawing,)
 
+    @property
+    def centrode_ends(self) -> tuple[float, float]:
+        """Driver angles at which both centrodes end, rad."""
+        lobes = self.law.lobes
+        end = self.centrode_angles(2)[-1] if self.pair.on_rack else lobes.n2 * lobes.period
+        return lobes.n1 * lobes.period, float(end)
+
     @cached_property
     def centrode_paths(self) -> tuple[Path, Path]:
         """Both centrodes as chains, each in its wheel's own frame, driver first."""
         from gearcam.kinds.gear_pair.drawings import centrode_path
 
-        lobes = self.law.lobes
-        end = self.centrode_angles(2)[-1] if self.pair.on_rack else lobes.n2 * lobes.period
-        return (
-            centrode_path(self.gear1, lobes.n1 * lobes.period),
-            centrode_path(self.gear2, end),
+        first, second = map(centrode_path, self.gears, self.centrode_ends)
+        return first, second
+
+    @property
+    def printed(self) -> tuple[Drawing, ...]:
+        """The steps of both wheels with their centrodes (see `PartsResult.printed`)."""
+        from gearcam.pictures.drawings import CENTRODE, Feature
+
+        paths = (path for path in self.centrode_paths for _ in self.steps)
+        curves = (Feature(layer=CENTRODE, shape=path) for path in paths)
+        return tuple(
+            replace(one, features=(*one.features, curve))
+            for one, curve in zip(self.plates, curves, strict=True)
         )
+
+    def teeth(self, number: int) -> Teeth:
+        """Return the teeth in front of a wheel (see `PartsResult.teeth`)."""
+        from gearcam.kinds.gear_pair.sheet import teeth_of
+
+        return teeth_of(self.steps[-1][number], self.centrode_ends[number])
+
+    def data(self, number: int) -> dict[str, str]:
+        """Return the data of a wheel, with its mate (see `PartsResult.data`)."""
+        other = 1 - number
+        name = self.heading(other).part_number or self.parts[other].name
+        return {**super().data(number), "mates with": f"{name}, {self.pair.teeth[other]} teeth"}
+
+    def notes(self, number: int) -> list[str]:
+        """Return notes on a wheel and its measures (see `PartsResult.notes`)."""
+        from gearcam.kinds.gear_pair.sheet import counted
+
+        nominal = ["Measures over pins, chords and spans are nominal."] if self.pins else []
+        return [*super().notes(number), counted(self.gears[number]), *nominal]
 
     @cached_property
     def drawing(self) -> Drawing:
@@ -141,10 +176,12 @@ class GearPairResult(MadePair):
         design, pose = self.design, self.design.output.pose
         radius = float(abs(self.pair.rolling.tracks[0].frames(np.array([pose])).p[0]))
         heading = self.heading(None)
+        names = [self.heading(n).part_number or part.name for n, part in enumerate(self.parts)]
         with files_in(design.files_in):
             rows = {"law": design.law_type, **sheet_rows(self.facts, PAIR_ROWS)}
             rows["drawn at phi1"] = f"{formatted(math.degrees(pose), FEW)} deg"
-            pair = pair_sheet(self.drawing, self.pair.shift, rows, heading, pitch_radius=radius)
+            drawing, shift = self.drawing, self.pair.shift
+            pair = pair_sheet(drawing, shift, rows, heading, names, pitch_radius=radius)
         return *super().sheets, pair
 
     def centrode_angles(self, count: int | None = None) -> Array:

@@ -8,12 +8,14 @@ Depends on drawings and sheets.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Final
 
 import numpy as np
 
 from gearcam.base.inches import file_unit
+from gearcam.gears.pair import Gear
+from gearcam.kinds.gear_pair.drawings import centrode_path
 from gearcam.numeric.arrays import bounds
 from gearcam.numeric.contour import Contour
 from gearcam.parts.shapes import extremes, true_points
@@ -23,6 +25,7 @@ from gearcam.sheets.dimensions import Measure
 from gearcam.sheets.paper import NO_VALUES, Heading, begin, finish
 from gearcam.sheets.part import ABOVE, LEFT
 from gearcam.sheets.sheet import CENTERLINE, Sheet, fine
+from gearcam.sheets.wheel import Teeth
 
 RIGHT: Final = 20.0
 """Space for dimensions on the right of the wheels, mm of paper."""
@@ -45,15 +48,44 @@ _GEAR_ROWS: Final = (
     "density_kg_m3", "mass.mass_kg", "mass.centroid_mm", "mass.unbalance_g_mm",
     "measuring.pin_diameter_mm", "measuring.over_pins_mm", "measuring.chord_mm",
     "measuring.chord_depth_mm", "measuring.constant_chord_mm", "measuring.constant_chord_depth_mm",
-    *(f"measuring.spans.{number}.span_mm" for number in range(8)),
 )  # fmt: skip
 """Facts in the tables of drawings."""
 
 
-def wheel_rows(number: int) -> tuple[str, ...]:
-    """Return the names of the facts in the table of a wheel's drawing, by its `number`."""
+def wheel_rows(number: int, facts: Iterable[str]) -> tuple[str, ...]:
+    """Return the names of those of all `facts` in the table of a wheel, by its `number`."""
     rows = [f"gears.{number}.{name}" for name in _GEAR_ROWS]
-    return (f"gears.{number}.teeth", "pair.module_mm", *_RACK_ROWS, *rows)
+    spans = [name for name in facts if name.startswith(f"gears.{number}.") and "span_mm" in name]
+    return (f"gears.{number}.teeth", "pair.module_mm", *_RACK_ROWS, *rows, *spans)
+
+
+def teeth_of(gear: Gear, end: float) -> Teeth:
+    """Return the teeth of a `gear` whose centrode ends at the driver angle `end`, rad."""
+    height = float(gear.profile.tip_height.max())
+    middle, way = _first(gear)
+    return Teeth(
+        pitch=centrode_path(gear, end),
+        root=centrode_path(gear, end, -gear.toothing.cutter.dedendum),
+        tip=centrode_path(gear, end, height),
+        first=middle + height * gear.toothing.turn * way,
+    )
+
+
+def counted(gear: Gear) -> str:
+    """Return in words how the teeth of a `gear` are counted, seen from the front."""
+    middle, way = _first(gear)
+    sense = "upwards" if way.imag > 0.0 else "downwards"
+    if not gear.toothing.track.slides:
+        sense = "counter-clockwise" if (middle.conjugate() * way).imag > 0.0 else "clockwise"
+    return f"Teeth are counted {sense} from tooth 1; space 1 follows it."
+
+
+def _first(gear: Gear) -> tuple[complex, complex]:
+    """Return the middle of tooth 1 on the centrode, mm, and the tangent there, as s rises."""
+    toothing = gear.toothing
+    place = toothing.tooth_places[toothing.numbers.index(1)]
+    frames = toothing.frames(toothing.track.angle(np.array([place])))
+    return complex(frames.p[0]), complex(frames.t[0])
 
 
 def pair_sheet(
@@ -61,6 +93,7 @@ def pair_sheet(
     center_distance: float,
     facts: Mapping[str, str],
     heading: Heading,
+    names: Sequence[str] = ("gear1", "gear2"),
     *,
     pitch_radius: float,
 ) -> Sheet:
@@ -76,6 +109,8 @@ def pair_sheet(
         Rows of the parameter table.
     heading : Heading
         What the title block says.
+    names : two str
+        What the wheels are called, driver first.
     pitch_radius : float, mm
         Distance of the pitch point from the driver's axis.
 
@@ -101,20 +136,23 @@ def pair_sheet(
     board = begin(drawing.name, high - low, room, low, len(facts) + 2, 0.0)
     _views(board, drawing, outlines, shafts)
     left, lowest, right, highest = extremes(points)
-    across = [Measure(0.0, pitch_radius), Measure(left, right)]
-    across += [Measure(0.0, center_distance)] if center_distance else []
+    across = [Measure(0.0, pitch_radius, aside=True), Measure(left, right, aside=True)]
+    across.append(Measure(0.0, center_distance or right))  # of a rack, to its back
     board.measure(across, lowest.imag)
-    board.measure([Measure(lowest, highest)], low.real, vertical=True)
+    board.measure([Measure(lowest, highest, aside=True)], low.real, vertical=True)
     board.draw(CENTERLINE, Circle(center=pitch_radius, diameter=POINT * board.unit))
     board.label(pitch_radius, "pitch point")
-    for number, shaft in enumerate(shafts, start=1):
-        board.label(shaft, f"gear{number}")
+    for place, name in zip((0.0, center_distance or 0.5 * (right + highest)), names, strict=True):
+        board.label(place, name)
     tolerance = max(contour.tolerance for contour in drawing.contours)
     notes = [
         f"Chord tolerance of the outlines: {fine(tolerance)} {file_unit().name}.",
         "Chain lines: centrodes; they touch at the pitch point.",
         "Make each wheel from its own drawing and file.",
     ]
+    if tolerances := heading.notes.general_tolerances:
+        where = "centre distance" if center_distance else "distance from axis to back of the rack"
+        notes.append(f"{tolerances} holds for the {where} too.")
     return finish(board, heading, facts, notes, NO_VALUES)
 
 

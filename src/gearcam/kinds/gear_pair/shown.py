@@ -40,7 +40,9 @@ def facts(result: GearPairResult) -> Facts:
         "mesh": _mesh(result),
         "kerf_mm": kerf or None,
         "gears": [_gear(result, gear) for gear in result.gears],
-        "steps": {"count": len(leads), "moved_mm": list(leads)} if len(leads) > 1 else None,
+        "steps": {"count": Fact(len(leads), "steps"), "moved_mm": list(leads)}
+        if len(leads) > 1
+        else None,
     }
     size = "travel_per_turn_mm" if result.pair.on_rack else "center_distance_mm"
     headline = [f"pair.{name}" for name in (size, "module_mm", "teeth")]
@@ -77,7 +79,7 @@ def _pair(result: GearPairResult) -> Tree:
         "teeth": list(pair.teeth),
         "face_width_mm": spec.face_width,
         "x": Fact(spec.x, "profile shift", unit="modules"),
-        "backlash_mm": spec.backlash,
+        "backlash_mm": Fact(spec.backlash, "backlash, given"),
         "rack": _rack(result),
         "assembly": Fact("along the axis", "the wheel goes into its ring", shown=True)
         if pair.internal
@@ -168,7 +170,7 @@ def _mesh(result: GearPairResult) -> Tree:
         "rim_min_mm": _rim(subject, limit_of(KIND, "thin-rim", limits) * module),
         "tip_pass_margin_mm": _tip_pass(result),
         "backlash_mm": Fact(
-            max(subject.backlash, 0.0), "backlash of the wheels", place=_parted(result), shown=True
+            max(subject.backlash, 0.0), "backlash, as made", place=_parted(result), shown=True
         ),
         "acceleration_max": Fact(
             abs(float(values[worst])),
@@ -358,6 +360,9 @@ def _inspection(result: GearPairResult, _: Measured) -> Files:
     rows = inspection_rows(result.steps, result.design.output.inspection_points)
     measures = measure_rows(result.steps, result.pins or (None, None))
     missing = {name: np.ma.masked_invalid(values) for name, values in measures.items()}
+    for name in ("opposite", "span_teeth"):
+        there = missing[name]
+        missing[name] = np.ma.array(there.filled(0.0).astype(int), mask=there.mask)
     return {"inspection.csv": table_bytes(rows), "measures.csv": table_bytes(missing)}
 
 

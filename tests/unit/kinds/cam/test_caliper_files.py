@@ -96,14 +96,22 @@ def test_the_table_of_a_sheet_is_short_and_of_its_own_part() -> None:
     first, second = (sheet_table(pair, number) for number in (0, 1))
     assert [*first] == ["angle_deg", "radius_1_mm"]
     assert [*second] == ["angle_deg", "radius_2_mm"]
-    assert len(first["angle_deg"]) == 24
+    assert len(first["angle_deg"]) == 36
     whole = rows(pair, "caliper", "caliper.csv")
-    np.testing.assert_allclose(second["radius_2_mm"], whole["radius_2_mm"][::15], atol=1e-9)
+    np.testing.assert_allclose(second["radius_2_mm"], whole["radius_2_mm"][::10], atol=1e-9)
     assert [*sheet_table(profile("groove_cam"), 0)] == [
         "angle_deg", "radius_inner_mm", "radius_outer_mm"
     ]  # fmt: skip
     plate = sheet_table(CamResult(read(PLATE)), 0)
-    assert 8 < len(plate["x_mm"]) <= 26
+    assert 8 < len(plate["x_mm"]) <= 38
+
+
+@pytest.mark.parametrize(("step", "shown"), [(12.0, 12.0), (4.0, 12.0), (0.5, 10.0), (30.0, 30.0)])
+def test_the_table_of_a_sheet_has_steps_of_the_design(step: float, shown: float) -> None:
+    result = profile("tappet", caliper_step=math.radians(step), files=("caliper", "drawing-svg"))
+    rows = result.values(0).rows
+    assert [float(row[0]) for row in rows] == np.arange(0.0, 360.0, shown).tolist()
+    assert "Radii: caliper.csv." in [text.text for text in result.sheets[0].texts]
 
 
 def test_the_lift_of_a_wheel_begins_at_its_lowest_place() -> None:
