@@ -60,7 +60,7 @@ RENAMED = {"module": "diametral pitch", "mm, deg": "inch, deg"}
 """Texts that differ in more than a unit and numbers."""
 
 TOKEN = re.compile(
-    r"(?:hole |gear)\d+|\d+ x |[a-zA-Z]+\d+(?= \()|M\d+|theta = 0"
+    r"(?:hole |tooth |space |gear)\d+|\d+ x |[a-zA-Z]+\d+(?= \()|M\d+|theta = 0"
     r"|-?[\d.]+ (?:to [\d.]+ )?deg|[\d.]+ g mm"
     r"|(?P<number>-?\d+\.?\d*(?:e-?\d+)?)|[^\d\s-]+|-"
 )
@@ -70,7 +70,7 @@ LENGTHS = re.compile(r"\d in\b|Ø|\bX |^Chamfer")
 """What cells with lengths have in them."""
 
 OF_LENGTHS = re.compile(
-    r", mm$|^(?:mark|slot, width|slot, mid|max\.|min\.|profile of|circular run-out)"
+    r", mm$|^(?:mark|arrow|slot, width|slot, mid|max\.|min\.|profile of|circular run-out)"
 )
 """What the cells on their left, or above them, have."""
 
@@ -243,7 +243,7 @@ def test_nothing_is_wrong_with_them(name: str) -> None:
 def test_the_heights_of_a_plate_are_at_round_places() -> None:
     _, result = results("translating_cam")
     page = Page(result.files("drawing-svg")["cam_drawing.svg"])
-    table = caliper_table(result, 0.5 * INCH)
+    table = caliper_table(result, 0.2 * INCH)
     for name, column in table.items():
         title = f"{name.split('_')[-2]}, in"
         assert page.column(title) == pytest.approx(column / INCH, abs=0.51e-4)

@@ -1,9 +1,9 @@
 r"""Tables: columns of numbers, and of texts, as CSV.
 
 Numbers are written as `numerals.exact` gives them, with the fewest digits that read back as the
-same double, whole ones of a column of integers without a point; the radius of a straight part is ``inf``; what a masked array masks does not exist and
-is left empty; lines end in ``\n``. Refused: other numbers that are not finite, columns of different
-lengths, names that would need quotes.
+same double, those of a column of integers without a point; the radius of a straight part is
+``inf``; what a masked array masks does not exist and is left empty; lines end in ``\n``. Refused:
+other numbers that are not finite, columns of different lengths, names that would need quotes.
 """
 
 from __future__ import annotations
@@ -85,7 +85,8 @@ def table_bytes(columns: Mapping[str, ArrayLike], full: Mapping[str, str] | None
         there = _exact(np.where(missing, 0.0, plain) + 0.0)
         there = np.where(missing, np.nan, np.where(np.isinf(there), np.inf, there))
         if np.asarray(columns[name]).dtype.kind in "iub":
-            tidy.append(np.where(missing, None, plain.astype(int).astype(object)).tolist())
+            numbers = plain.astype(int).tolist()
+            tidy.append([None if no else one for one, no in zip(numbers, missing, strict=True)])
         else:
             tidy.append(there.tolist())
     # written in one go, a list of lists has its numbers as `repr` gives each of them

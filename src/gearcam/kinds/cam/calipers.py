@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearcam.base.errors import InfeasibleError
+from gearcam.base.inches import file_unit
 from gearcam.cams.caliper import caliper, lowered, wheel
 from gearcam.kinds.shared import steps_of_turn
 
@@ -71,14 +72,18 @@ def sheet_table(result: CamResult, number: int) -> Table:
     Returns
     -------
     dict of str to (n,) array
-        Rows of `caliper_table`, of the walls of the part: all, or every second and so on.
+        Rows of `caliper_table`, of the walls of the part: all, or every second and so on; of a
+        plate with too many for a sheet those at round places.
     """
     output: Any = result.design.output
-    step, whole = output.caliper_step, 2.0 * math.pi
-    if not result.carrier.around:
-        step, whole = output.height_step, result.program.period
-    every = max(1, math.ceil(whole / (_ROWS * step) - _ROUNDING))
-    return caliper_table(result, every * step, number)
+    if result.carrier.around:
+        every = math.ceil(2.0 * math.pi / (_ROWS * output.caliper_step) - _ROUNDING)
+        return caliper_table(result, max(1, every) * output.caliper_step, number)
+    step, period, size = output.height_step, result.program.period, file_unit().size
+    if _ROWS * step < period:
+        step = size * 10.0 ** math.floor(math.log10(period / size / _ROWS))
+        step *= next(one for one in (1.0, 2.0, 5.0, 10.0) if one * step * _ROWS >= period)
+    return caliper_table(result, step, number)
 
 
 def _heights(walls: Sequence[Any], step: float) -> Table:

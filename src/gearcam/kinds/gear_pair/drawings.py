@@ -27,9 +27,20 @@ _POINTS: Final = 720
 
 
 def centrode_path(gear: Gear, end: float, away: float = 0.0) -> Path:
-    """Return the centrode of a `gear` as a chain in its own frame, to the driver angle `end`.
+    """Return the centrode of a wheel as a chain in its own frame, or a parallel of it.
 
-    Or its parallel that is `away` from it towards the tips, mm.
+    Parameters
+    ----------
+    gear : Gear
+        The wheel.
+    end : float, rad
+        Driver angle at its end.
+    away : float, mm
+        How far away from the centrode it is, towards the tips.
+
+    Returns
+    -------
+    Path
     """
     closed = gear.toothing.closed
     phi1 = np.linspace(0.0, end, _POINTS + 1)[: -1 if closed else None]
