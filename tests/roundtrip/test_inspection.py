@@ -126,6 +126,17 @@ def test_measures_are_a_row_for_each_tooth() -> None:
     assert thinner == pytest.approx(-2 * 0.05 / np.sin(np.radians(20)), rel=0.25)
 
 
+def test_whole_numbers_have_no_point() -> None:
+    made = job("ellipse")
+    for name, data in made.files("inspection").items():
+        head, *rows = (line.split(",") for line in data.decode().splitlines())
+        whole = {"wheel", "step", "tooth", "side", "point", "opposite", "span_teeth"} & {*head}
+        assert len(whole) == 5
+        for column in whole:
+            cells = {row[head.index(column)] for row in rows}
+            assert not [one for one in cells if "." in one], (name, column)
+
+
 def test_rows_of_open_wheels_and_steps() -> None:
     door = table(job("furnace_door").files("inspection")["measures.csv"])
     first = door["wheel"] == 1

@@ -97,8 +97,8 @@ class Unrolled:
 class Wheel:
     """A part with the data of its sheet; points are on the true curves.
 
-    `teeth` are those of a gear or a rack; `unrolled` is what is shown of a cam in space, of which the
-    part is the blank.
+    `teeth` are those of a gear or a rack; `unrolled` is what is shown of a cam in space, of which
+    the part is the blank.
     """
 
     part: Part

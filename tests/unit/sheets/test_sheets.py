@@ -298,7 +298,11 @@ def test_the_pitch_point_is_marked() -> None:
 def test_a_pair_with_a_rack_has_no_centre_distance() -> None:
     made = heading(general_tolerances="ISO 2768-mK")
     sheet = pair_sheet(pair(), 0.0, {}, made, ("G-1", "G-2"), pitch_radius=30.0)
-    assert 60.0 not in [one.value for one in sheet.dimensions]
+    values = [one.value for one in sheet.dimensions]
+    assert 60.0 not in values
+    outer = [one.shape for one in sheet.features if one.layer.endswith(OUTLINE)]
+    back = max(one.points.real.max() for one in outer)  # type: ignore[union-attr]
+    assert back == pytest.approx(sorted(values)[1], abs=2e-3)
     assert {"G-1", "G-2"} <= {text.text for text in sheet.words}
     told = "ISO 2768-mK holds for the distance from axis to back of the rack too."
     assert told in " ".join(text.text for text in sheet.texts)

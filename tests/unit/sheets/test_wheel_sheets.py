@@ -102,8 +102,38 @@ def test_the_mate_and_the_file_of_the_outline_are_named() -> None:
     assert "Outline: gear1.dxf (not written with this drawing)" in notes(gc.build(other).sheets[0])
 
 
+def test_marks_have_their_centres_in_the_table() -> None:
+    result = profile("shop_order")
+    for part, sheet, other in zip(result.parts, result.sheets, ("gear2", "gear1"), strict=False):
+        at, (mark,) = dict(sheet.rows)["mark, centre"].split(), part.marks
+        found = complex(float(at[1]), float(at[3]))
+        assert abs(found - mark.center) < 1e-3
+        assert dict(sheet.rows)["mates with"] == f"{other}, 32 teeth"
+    rack = profile("gate_rack")
+    assert dict(rack.sheets[1].rows)["arrow, place by the DXF"].endswith(" deep")
+
+
 def test_prints_have_the_centrode_and_files_to_cut_do_not() -> None:
     result = profile("gate_rack")
     kinds = [{one.layer for one in drawing.features} for drawing in result.printed]
     assert all(CENTRODE in layers for layers in kinds)
     assert not any(one.layer == CENTRODE for plate in result.to_cut for one in plate.features)
+
+
+@pytest.mark.parametrize(("name", "number", "count"), [("limacon", 1, 8), ("ellipse", 0, 4)])
+def test_all_spans_are_in_the_table(name: str, number: int, count: int) -> None:
+    made = gc.build(gc.load(f"profiles/{name}.toml").with_({"output.files": ["drawing-svg"]}))
+    sheet = made.sheets[number]
+    spans = made.gears[number].measuring.spans
+    shown = {value for label, value in sheet.rows if label.startswith("span ")}
+    assert len([label for label, _ in sheet.rows if label.startswith("span ")]) == count
+    assert len({*spans.place.tolist()}) == count
+    assert {float(value.split()[0]) for value in shown} <= {*np.round(spans.reading, 3).tolist()}
+    assert "Measures over pins, chords and spans are nominal." in notes(sheet)
+
+
+def test_spans_that_are_too_many_for_a_sheet_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("gearcam.kinds.gear_pair.sheet.MOST_SPANS", 3)
+    made = gc.build(gc.load("profiles/ellipse.toml").with_({"output.files": ["drawing-svg"]}))
+    assert dict(made.data(1))["spans"] == "4 places, in measures.csv"
+    assert not [label for label in made.data(1) if label.startswith("span ")]

@@ -149,9 +149,14 @@ class GearPairResult(MadePair):
 
     def data(self, number: int) -> dict[str, str]:
         """Return the data of a wheel, with its mate (see `PartsResult.data`)."""
-        other = 1 - number
+        from gearcam.kinds.gear_pair.sheet import MOST_SPANS, spans_of
+
+        other, rows = 1 - number, super().data(number)
+        spans = len(spans_of(number, self.facts))
+        if spans > MOST_SPANS:
+            rows["spans"] = f"{spans} places, in measures.csv"
         name = self.heading(other).part_number or self.parts[other].name
-        return {**super().data(number), "mates with": f"{name}, {self.pair.teeth[other]} teeth"}
+        return {**rows, "mates with": f"{name}, {self.pair.teeth[other]} teeth"}
 
     def notes(self, number: int) -> list[str]:
         """Return notes on a wheel and its measures (see `PartsResult.notes`)."""

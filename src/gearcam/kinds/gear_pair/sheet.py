@@ -52,11 +52,21 @@ _GEAR_ROWS: Final = (
 """Facts in the tables of drawings."""
 
 
+MOST_SPANS: Final = 16
+"""Largest number of spans that the table of a wheel has."""
+
+
 def wheel_rows(number: int, facts: Iterable[str]) -> tuple[str, ...]:
     """Return the names of those of all `facts` in the table of a wheel, by its `number`."""
     rows = [f"gears.{number}.{name}" for name in _GEAR_ROWS]
-    spans = [name for name in facts if name.startswith(f"gears.{number}.") and "span_mm" in name]
-    return (f"gears.{number}.teeth", "pair.module_mm", *_RACK_ROWS, *rows, *spans)
+    spans = spans_of(number, facts)
+    shown = spans if len(spans) <= MOST_SPANS else []
+    return (f"gears.{number}.teeth", "pair.module_mm", *_RACK_ROWS, *rows, *shown)
+
+
+def spans_of(number: int, facts: Iterable[str]) -> list[str]:
+    """Return the names of those of all `facts` that are spans of a wheel, by its `number`."""
+    return [name for name in facts if name.startswith(f"gears.{number}.") and "span_mm" in name]
 
 
 def teeth_of(gear: Gear, end: float) -> Teeth:
