@@ -514,7 +514,7 @@ def test_nothing_is_wrong_with_the_drawings_of_profiles(name: str) -> None:
             ("follower", "pivot distance", "face offset", "lift", "base radius", "cam turns"),
         ),
         ("circular", ("teeth", "module", "pressure angle", "addendum", "dedendum",
-                      "backlash, given", "backlash, as made", "face width", "profile shift",
+                      "backlash, given", "backlash of the wheels", "face width", "profile shift",
                       "centrode length", "cutter", "mates with")),
     ],
 )  # fmt: skip

@@ -170,7 +170,7 @@ def _mesh(result: GearPairResult) -> Tree:
         "rim_min_mm": _rim(subject, limit_of(KIND, "thin-rim", limits) * module),
         "tip_pass_margin_mm": _tip_pass(result),
         "backlash_mm": Fact(
-            max(subject.backlash, 0.0), "backlash, as made", place=_parted(result), shown=True
+            max(subject.backlash, 0.0), "backlash of the wheels", place=_parted(result), shown=True
         ),
         "acceleration_max": Fact(
             abs(float(values[worst])),
