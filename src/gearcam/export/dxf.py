@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
-from gearcam.base.inches import FileUnit, file_unit
+from gearcam.base.inches import MILLIMETRES, FileUnit, file_unit
 from gearcam.base.numerals import formatted
 from gearcam.numeric.arcs import fit_closed
 from gearcam.numeric.arrays import Array, Plane, as_pairs
