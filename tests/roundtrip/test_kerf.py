@@ -88,9 +88,17 @@ def regions(data: bytes) -> dict[str, list[shapely.Polygon]]:
     return found
 
 
-@pytest.mark.parametrize("kind", ["stl", "svg", "csv", "drawing-svg", "inspection"])
+@pytest.mark.parametrize("kind", ["stl", "svg", "csv", "inspection"])
 def test_the_kerf_changes_no_file_of_the_part(kind: str) -> None:
     assert files(kind, KERF) == files(kind)
+
+
+def test_drawings_say_only_that_the_file_of_the_outline_is_that_of_a_cut() -> None:
+    for plain, cut in zip(job().sheets, job(KERF).sheets, strict=True):
+        assert cut.rows == plain.rows
+        assert [one.label for one in cut.dimensions] == [one.label for one in plain.dimensions]
+        moved = "moved by half the kerf" in " ".join(text.text for text in cut.texts)
+        assert moved == (plain.name != "pair")
 
 
 def test_the_pair_is_drawn_as_it_is_whatever_the_kerf() -> None:

@@ -235,7 +235,8 @@ def test_the_sheet_of_an_internal_pair_has_its_centre_distance(made: GearPairRes
     assert f"{made.pair.center_distance:.3f}".rstrip("0") in words
     # r1 at 1 rad, by A*i/(1 - i)
     i = float(made.law.derivatives(np.array(POSE), 1)[1])
-    assert f"{made.pair.center_distance * i / (1.0 - i):.3f}".rstrip("0") in words
+    radius = f"{made.pair.center_distance * i / (1.0 - i):.3f}".rstrip("0")
+    assert f"({radius})" in words
     assert {"gear1", "gear2", "pitch point"} <= set(words)
 
 
