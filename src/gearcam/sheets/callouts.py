@@ -76,9 +76,9 @@ def callouts(board: Board, wheel: Wheel, side: float) -> None:
         edge = complex(side - part.ends[0] + part.screw.middle, up)
         board.label(edge, thread(part.screw))
     for mark in part.marks:
-        words = f"{diameter_text(mark.diameter)}, {length_text(mark.depth)} deep"
-        board.callout(mark.edge, f"mark {words}", "label", row=("mark", words))
-        board.rows.append(("mark, centre", position(mark.center - wheel.origin)))
+        words = f"mark {diameter_text(mark.diameter)}, {length_text(mark.depth)} deep"
+        board.callout(mark.edge, words, "label")
+        board.rows.append((words, position(mark.center - wheel.origin)))
     if part.arrow is not None:
         board.rows.append(("arrow, place by the DXF", f"{length_text(part.arrow.depth)} deep"))
 

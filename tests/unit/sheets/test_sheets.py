@@ -165,8 +165,7 @@ def test_what_has_no_room_goes_into_the_table() -> None:
     crowded = Part(name="gear1", contours=(disc_contour(40.0),), width=5.0, marks=marks)
     sheet = sheet_of(crowded)
     shown = sum(one.label.startswith("mark ") for one in sheet.dimensions)
-    (row,) = (label for label, _ in sheet.rows if label.endswith("x mark"))
-    assert shown + int(row.split()[0]) == len(marks)
+    assert sum(label.startswith("mark ") for label, _ in sheet.rows) == len(marks)
     assert 0 < shown < len(marks)
     assert not [*faults(sheet)]
 
