@@ -122,11 +122,11 @@ def part_sheet(
     _section_sizes(board, wheel, side)
     if turning is not None:
         turning_arrow(board, wheel, turning)
+    section_letters(board, wheel.plane, wheel.low.imag, wheel.high.imag)
+    callouts(board, wheel, side)
     if teeth is not None:
         at = position(teeth.first - wheel.origin)
         board.label(teeth.first, "tooth 1", ("tooth 1, tip", at))
-    section_letters(board, wheel.plane, wheel.low.imag, wheel.high.imag)
-    callouts(board, wheel, side)
     frames(board, wheel, heading, side)
     return finish(board, heading, facts, [*_notes(wheel), *notes], values)
 
