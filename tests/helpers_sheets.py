@@ -7,11 +7,11 @@ from itertools import combinations
 
 import numpy as np
 
-from gearcam.numeric.arrays import lengths_along
+from gearcam.numeric.arrays import Plane, bounds, lengths_along
 from gearcam.parts.body import Part
-from gearcam.sheets.paper import BINDING, MARGIN, Heading
+from gearcam.sheets.paper import BINDING, MARGIN, Heading, area_of
 from gearcam.sheets.part import part_sheet
-from gearcam.sheets.sheet import FRAME, SERIES, Sheet, Text
+from gearcam.sheets.sheet import DIMENSION, FRAME, SERIES, Sheet, Text
 from gearcam.sheets.spec import DrawingSpec
 
 STEP = 0.1
@@ -19,6 +19,13 @@ STEP = 0.1
 
 EDGE = 0.05
 """How far a line may reach into the box of a text, mm of paper."""
+
+INWARDS = np.array([1.0, 1.0, -1.0, -1.0])
+"""From the sides of a box, left, low, right and high, into it."""
+
+APART, LOW = 2.3, 1.0
+"""Least gap between texts beside each other, and how far these reach past each other, mm of paper.
+"""
 
 
 def heading(title: str = "t", **notes: str | float) -> Heading:
@@ -41,6 +48,25 @@ def points(chain: np.ndarray) -> np.ndarray:
     return np.interp(np.linspace(0.0, ways[-1], count), ways, chain)
 
 
+def corners(points: Plane) -> list[float]:
+    """Left, low, right and high end of points on paper, mm."""
+    low, high = bounds(points)
+    return [low.real, low.imag, high.real, high.imag]
+
+
+def is_box(points: Plane) -> bool:
+    """Whether four corners have edges along x and y."""
+    ways = np.roll(points, -1) - points
+    return len(points) == 4 and bool((np.abs(ways.real * ways.imag) < 1e-6).all())
+
+
+def inside(along: np.ndarray, boxes: np.ndarray) -> np.ndarray:
+    """Which points, complex, are in which boxes, (n, 4)."""
+    x, y = np.real(along)[:, None], np.imag(along)[:, None]
+    left, low, right, high = boxes.T
+    return (x > left) & (y > low) & (x < right) & (y < high)
+
+
 def faults(sheet: Sheet) -> Iterator[str]:
     """What is wrong with a sheet, in words."""
     boxes = {id(text): (text.text, box(sheet, text)) for text in sheet.words}
@@ -54,11 +80,24 @@ def faults(sheet: Sheet) -> Iterator[str]:
     for words, (left, low, right, high) in boxes.values():
         if left < limits[0] or low < limits[1] or right > limits[2] or high > limits[3]:
             yield f"{words!r} is outside the frame"
+    low, right = area_of(sheet.paper)[0].imag, area_of(sheet.paper)[1].real  # of the views
     for (one, a), (two, b) in combinations(boxes.values(), 2):
-        if min(a[2], b[2]) > max(a[0], b[0]) and min(a[3], b[3]) > max(a[1], b[1]):
+        gap = np.maximum(a[:2], b[:2]) - np.minimum(a[2:], b[2:])
+        if max(gap) < 0.0:
             yield f"{one!r} lies on {two!r}"
-    inwards = np.array([EDGE, EDGE, -EDGE, -EDGE])
-    every = np.array([corners for _, corners in boxes.values()]) + inwards
+        elif gap[0] < APART and gap[1] < -LOW and min(a[1], b[1]) > low and max(a[2], b[2]) < right:
+            yield f"{one!r} reads on as {two!r}"
+    yield from on_lines(sheet, boxes, limits)
+    yield from twice(sheet)
+
+
+def on_lines(
+    sheet: Sheet, boxes: dict[int, tuple[str, np.ndarray]], limits: np.ndarray
+) -> Iterator[str]:
+    """Lines outside the frame, on the boxes of texts, and on tolerance frames."""
+    every = np.array([corners for _, corners in boxes.values()]) + EDGE * INWARDS
+    closed = [one.points for one in sheet.drawn_lines if one.layer == DIMENSION and one.closed]
+    cells = np.array([corners(one) for one in closed if is_box(one)] or [4 * [np.nan]])
     names = [words for words, _ in boxes.values()]
     for line in sheet.drawn_lines:
         chain = np.append(line.points, line.points[:1]) if line.closed else line.points
@@ -69,14 +108,12 @@ def faults(sheet: Sheet) -> Iterator[str]:
             or min(limits[2] - x.max(), limits[3] - y.max()) < -1e-6
         ):
             yield f"a line of {line.layer} is outside the frame"
-        within = (
-            (x[:, None] > every[:, 0])
-            & (y[:, None] > every[:, 1])
-            & (x[:, None] < every[:, 2])
-            & (y[:, None] < every[:, 3])
-        ).any(axis=0)
+        within = inside(along, every - 0.5 * line.width * INWARDS).any(axis=0)
         yield from (f"a line of {line.layer} on {names[k]!r}" for k in np.flatnonzero(within))
-    yield from twice(sheet)
+        # the cells of a frame are drawn as such, and have whole symbols in them
+        found = inside(along, cells + EDGE * INWARDS)
+        if (found.any(axis=0) & ~found.all(axis=0)).any():
+            yield f"a line of {line.layer} on a tolerance frame"
 
 
 def twice(sheet: Sheet) -> Iterator[str]:

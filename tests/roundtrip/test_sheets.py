@@ -32,7 +32,7 @@ from gearcam.parts.body import Hub, Mark, Opening, Part
 from gearcam.parts.make import make_part
 from gearcam.parts.openings import Workpiece
 from gearcam.parts.shapes import Circle
-from gearcam.pictures.drawings import Drawing, reach
+from gearcam.pictures.drawings import Drawing, Feature, reach
 from gearcam.pictures.drawings import Path as Chain
 from gearcam.sheets.paper import Heading
 from gearcam.sheets.sheet import CAPITAL, Sheet
@@ -393,8 +393,6 @@ def test_a_stepped_part_shows_its_steps() -> None:
 
 def pages(size: complex) -> list[Sheet]:
     corners = np.array([0.0, size.real, size, 1j * size.imag])
-    from gearcam.pictures.drawings import Feature
-
     shape = Chain(points=corners.astype(complex))
     return [*tiles(Drawing(name="gear1", features=(Feature(layer="OUTLINE", shape=shape),)), "t")]
 
@@ -477,6 +475,16 @@ def broken(sheet: Sheet) -> Iterator[tuple[str, Sheet]]:
         ),
     )
     yield "dimensioned twice", replace(sheet, dimensions=[*sheet.dimensions, sheet.dimensions[0]])
+    text = next(one for one in sheet.texts if one.text == "A-A")
+    beside = replace(text, text="x", place=text.place + (0.5 * text.width + 2.5) * sheet.unit)
+    yield "reads on as", replace(sheet, texts=[*sheet.texts, beside])
+    wide = max(sheet.dimensions, key=lambda one: one.value * (one.kind == "linear"))
+    line = complex(wide.lines[-1] @ [0.8, 0.2])
+    near = replace(text, text="(1)", height=2.5, place=line + 0.8j * sheet.unit)
+    yield "on '(1)'", replace(sheet, texts=[*sheet.texts, near])
+    cell = line + np.array([-3.0 - 2.0j, 3.0 - 2.0j, 3.0 + 3.0j, -3.0 + 3.0j]) * sheet.unit
+    frame = Feature(layer="DIMENSION", shape=Chain(points=cell.astype(np.complex128)))
+    yield "tolerance frame", replace(sheet, features=[*sheet.features, frame])
 
 
 def test_the_lint_finds_faults() -> None:

@@ -61,7 +61,7 @@ RENAMED = {"module": "diametral pitch", "mm, deg": "inch, deg"}
 
 TOKEN = re.compile(
     r"(?:hole |tooth |space |gear)\d+|\d+ x |[a-zA-Z]+\d+(?= \()|M\d+|theta = 0"
-    r"|-?[\d.]+ (?:to [\d.]+ )?deg|[\d.]+ g mm"
+    r"|-?[\d.]+ (?:to [\d.]+ )?deg|[\d.]+°|[\d.]+ g mm"
     r"|(?P<number>-?\d+\.?\d*(?:e-?\d+)?)|[^\d\s-]+|-"
 )
 """What is the same in every unit, or a number."""

@@ -271,14 +271,22 @@ class GriddedCam(LoadedCam, Result):
         steps, places : int
             Numbers of cam angles in a turn, and of places along the roller.
         """
+        return self.fitted(self.body_of(steps, places), self.core)
+
+    def body_of(self, steps: int, places: int) -> Mesh:
+        """Return the cam without what its core has, as a mesh (see `mesh_of`)."""
         with self.stage("solid"):
             made = self.solid_of(steps, places)
-            made = made.mirrored if self.cam.clockwise else made
-            if self.core is None:
-                return made
-            from gearcam.parts.solids import fitted
+            return made.mirrored if self.cam.clockwise else made
 
-            return fitted(made, self.core, self.core_size[1])
+    def fitted(self, body: Mesh, core: Part | None) -> Mesh:
+        """Return a `body` with what a `core` has, if there is one."""
+        if core is None:
+            return body
+        from gearcam.parts.solids import fitted
+
+        with self.stage("solid"):
+            return fitted(body, core, self.core_size[1])
 
     @abstractmethod
     def moved_poses(self, theta: Array) -> dict[str, SpacePose]:
@@ -424,7 +432,12 @@ class GriddedCam(LoadedCam, Result):
         steps, places = self.solid_steps, self.design.output.wall_points
         if not self.carved and self.facets(steps, places) > self.most_facets:
             raise self._too_fine(places)
-        return self.mesh_of(steps, places)
+        return self.fitted(self.body, self.core)
+
+    @cached_property
+    def body(self) -> Mesh:
+        """The cam without what its core has, as a mesh of the steps of the design."""
+        return self.body_of(self.solid_steps, self.design.output.wall_points)
 
     def _too_fine(self, places: int) -> InfeasibleError:
         """Return the refusal of a solid with too many facets, with the least step that has not."""

@@ -23,7 +23,7 @@ from gearcam.sheets.paper import Heading, Values, sheet_rows
 from gearcam.sheets.part import part_sheet
 from gearcam.sheets.sections import mesh_loops
 from gearcam.sheets.sheet import Sheet, column
-from gearcam.sheets.wheel import Sense, Unrolled, check_runout
+from gearcam.sheets.wheel import GrooveSizes, Sense, Unrolled, check_runout, upright
 
 _STEPS: Final = 360
 _PLACES: Final = 5
@@ -43,6 +43,7 @@ def cam_sheet(
     rows: Sequence[str],
     tabled: tuple[str, str, Callable[[Array], Array]],
     texts: tuple[str, str],
+    groove: GrooveSizes,
 ) -> Sheet:
     """Return the sheet of a cam in space.
 
@@ -60,6 +61,8 @@ def cam_sheet(
         What is tabled, its unit, and its values at cam angles, rad.
     texts : (str, str)
         What is written above the unrolled outside, and where its walls are given.
+    groove : GrooveSizes
+        The sizes of its groove.
 
     Returns
     -------
@@ -82,8 +85,9 @@ def cam_sheet(
         part = Part(name=STEM, contours=(outline,), width=length, openings=openings)
     check_runout(design.drawing, [part])
     steps, places = min(result.solid_steps, _STEPS), min(design.output.wall_points, _PLACES)
-    mesh = result.mesh if result.carved else result.mesh_of(steps, places)
-    loops = [loop - base for loop in mesh_loops(mesh)]
+    body = result.body if result.carved else result.body_of(steps, places)
+    core = result.core and upright(result.core)
+    loops = [loop - base for loop in mesh_loops(result.fitted(body, core))]
     low, _ = box(drawing.features)
     unrolled = replace(drawing, features=place(drawing.features, Pose(0.0, -low)))
     theta = np.arange(0.0, 360.0, _TABLE)
@@ -100,5 +104,5 @@ def cam_sheet(
         Heading(title=design.name, notes=design.drawing),
         turning=Sense(zero=0.0, clockwise=result.cam.clockwise),
         values=Values(title=("theta, deg", f"{name}, {unit}"), rows=table),
-        unrolled=Unrolled(loops=loops, drawing=unrolled, title=title, note=texts[1]),
+        unrolled=Unrolled(loops=loops, drawing=unrolled, title=title, note=texts[1], groove=groove),
     )

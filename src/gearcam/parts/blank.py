@@ -20,6 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field, fields, make_dataclass, replace
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Self, get_type_hints
 
 from gearcam.base.display import ShortRepr
@@ -99,6 +100,14 @@ TAPPED: Final = {
 }  # fmt: skip
 """Tapping drills of threads, mm: coarse ones of ISO 2306, and usual ones of the unified thread
 (numbers 43, 36, 29, 25, 21 and 7, letter F, 5/16 in)."""
+
+
+def thread_diameter(size: str) -> float:
+    """Return the nominal diameter of a thread, mm, by its `size` in `TAPPED`."""
+    word = size.partition("-")[0]
+    if word[0] == "M":
+        return float(word[1:])
+    return 25.4 * (0.06 + 0.013 * int(word[1:]) if word[0] == "#" else float(Fraction(word)))
 
 
 def serving(names: Collection[str]) -> set[str]:

@@ -166,10 +166,14 @@ class Bevel(Layer):
     def on(self, layer: Layer) -> bool:
         """Return whether it is of the edge of a `layer`, in its face on this side."""
         level = self.high == layer.high if self.up else self.low == layer.low
-        one, other, alike = self.edge, layer.edge, False
-        if isinstance(one, Circle) and isinstance(other, Circle):
-            alike = (one.center, one.diameter) == (other.center, other.diameter)
-        return level and not self.hollow and (one is other or alike)
+        return level and not self.hollow and self.cuts(layer.edge)
+
+    def cuts(self, edge: Edge) -> bool:
+        """Return whether it is of an `edge`, or of an equal circle."""
+        alike = False
+        if isinstance(self.edge, Circle) and isinstance(edge, Circle):
+            alike = (self.edge.center, self.edge.diameter) == (edge.center, edge.diameter)
+        return alike or self.edge is edge
 
     @property
     def edges(self) -> tuple[Edge, ...]:

@@ -20,8 +20,8 @@ import numpy as np
 
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane, as_pairs, lengths_along
 from gearcam.pictures.drawings import Circle, Feature, Path, Shape, chains
-from gearcam.sheets.dimensions import SHELF, UPRIGHT, Measure, arrow_head, leader, linear
-from gearcam.sheets.sheet import CENTERLINE, Box, Hatch, Sheet, SheetDimension, Text, text_width
+from gearcam.sheets.dimensions import SHELF, UPRIGHT, Measure, arrow_head, leader, linear, shelf
+from gearcam.sheets.sheet import CENTERLINE, Box, Hatch, Sheet, SheetDimension, Text
 
 CELL: Final = 0.5
 """Cell size of the grids, mm of paper."""
@@ -32,6 +32,9 @@ FIRST_LEVEL: Final = 11.0
 
 CLEAR: Final = 1.0
 """Clear margin around a text, mm of paper."""
+
+BESIDE: Final = 4.0
+"""That beside a text, which is not to read on as another, over the one above it."""
 
 OVERHANG: Final = 3.0
 """Extension of centre lines beyond their circle, mm of paper."""
@@ -105,7 +108,7 @@ class Board(Sheet):
     def write(self, text: Text) -> None:
         """Write a text at its place."""
         self.texts.append(text)
-        self._take(*text.box(self.unit))
+        self.take(*text.box(self.unit))
 
     def first_free(self, texts: Iterable[Text]) -> None:
         """Write the first of several `texts` that has space, or else the first."""
@@ -140,7 +143,7 @@ class Board(Sheet):
         self.dimensions.append(dimension)
         for line in dimension.lines:
             self._ink(line)
-        self._take(*dimension.text.box(self.unit))
+        self.take(*dimension.text.box(self.unit))
 
     def callout(
         self,
@@ -172,7 +175,7 @@ class Board(Sheet):
             Whether there is space.
         """
         reaches = np.concatenate([_REACHES, -_REACHES]) if kind == "radius" else _REACHES
-        found = self.place(circle, complex(text_width(text), SHELF), angles, reaches)
+        found = self.place(circle, complex(shelf(text), SHELF), angles, reaches)
         if found:
             self.add(leader(circle, *found, text, kind, self.unit))
         elif row:
@@ -264,8 +267,16 @@ class Board(Sheet):
         cells, inside = self._cells(points)
         self._grids[0, cells[inside, 0], cells[inside, 1]] = True
 
-    def _take(self, low: complex, high: complex) -> None:
-        edge = CLEAR * self.unit * (1.0 + 1j)
+    def take(self, low: complex, high: complex) -> None:
+        """Keep texts and leaders from a box.
+
+        Parameters
+        ----------
+        low, high : complex, mm
+            Its lower left and its upper right corner.
+        """
+        size = high - low
+        edge = CLEAR * self.unit * (BESIDE + 1j if size.real > size.imag else 1.0 + BESIDE * 1j)
         corners, _ = self._cells(np.array([low - edge, high + edge]))
         (i, j), (k, m) = np.clip(corners, 0, None)
         self._grids[1, i : k + 1, j : m + 1] = True

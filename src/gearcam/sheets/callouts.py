@@ -15,27 +15,76 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.numerals import decimal
-from gearcam.parts.body import Part, ScrewHole
+from gearcam.numeric.arrays import Array, Plane
+from gearcam.parts.body import Part
 from gearcam.parts.fits import FitSize
 from gearcam.parts.shapes import Circle, Loop, true_points
 from gearcam.pictures.drawings import SLOT
 from gearcam.sheets.board import OVERHANG, Board
-from gearcam.sheets.dimensions import diameter_text
+from gearcam.sheets.dimensions import ARROW, diameter_text
 from gearcam.sheets.paper import Heading
 from gearcam.sheets.sheet import CENTERLINE, DIMENSION, fine, length_text
-from gearcam.sheets.symbols import frame
-from gearcam.sheets.wheel import SAME, Sense, Wheel, fitted, holes_of
+from gearcam.sheets.symbols import DATUM, frame
+from gearcam.sheets.wheel import SAME, UP, GrooveSizes, Sense, Wheel, fitted, floor_of, holes_of
+
+_FAN: Final = np.radians([0.0, 15.0, -15.0, 30.0, -30.0, 45.0, -45.0, 60.0, -60.0, 75.0, -75.0])
+"""Directions of a leader from that across an edge, rad."""
+
+_FLAT: Final = 1e-3
+"""Largest distance of an edge of the section from a face, over the radius, that counts as none."""
+
+_LOW: Final = 0.05
+"""Differences of heights over that of a wall or a chamfer that do not count."""
+
+PAST_SECTION: Final = 5.0
+"""How far the line of theta = 0 goes past the letters of a section that it is on, mm of paper."""
+
+_PLACES: Final = 12
+"""Most places on arcs about the axis that are tried for the leader of a radius."""
 
 _NEAR: Final = 0.1
 """Angle to both sides of theta = 0 at which the outline is looked at, rad."""
 
 
-def turning_arrow(board: Board, wheel: Wheel, turning: Sense) -> None:
-    """Draw on a `board` where the angle of a cam, a `wheel`, is 0, and how it is `turning`."""
+def zero_line(board: Board, wheel: Wheel, turning: Sense) -> complex:
+    """Draw where the angle of a cam is 0.
+
+    Parameters
+    ----------
+    board : Board
+        The sheet.
+    wheel : Wheel
+        The cam.
+    turning : Sense
+        How it turns.
+
+    Returns
+    -------
+    complex, mm
+        The end of the line.
+    """
     ahead = wheel.points * cmath.rect(1.0, -turning.zero)
     reach = float(ahead.real[np.abs(np.angle(ahead)) < _NEAR].max())
-    end = cmath.rect(reach + 8.0 * board.unit, turning.zero)
+    past = 8.0 + (PAST_SECTION if turning.upright else 0.0)
+    end = cmath.rect(reach + past * board.unit, turning.zero)
     board.line(CENTERLINE, 0j, end)
+    return end
+
+
+def turning_arrow(board: Board, wheel: Wheel, turning: Sense, end: complex) -> None:
+    """Say where the angle of a cam is 0, and how it turns.
+
+    Parameters
+    ----------
+    board : Board
+        The sheet.
+    wheel : Wheel
+        The cam.
+    turning : Sense
+        How it turns.
+    end : complex, mm
+        The end of the line where its angle is 0.
+    """
     board.label(end, "theta = 0", ("theta = 0 at", f"{decimal(math.degrees(turning.zero))} deg"))
     radius = 0.5 * (wheel.radius + float(np.abs(wheel.points).min()))
     sense = -1.0 if turning.clockwise else 1.0
@@ -47,40 +96,144 @@ def turning_arrow(board: Board, wheel: Wheel, turning: Sense) -> None:
     board.label(complex(arc[9]), words, ("rotation", words))
 
 
-def frames(board: Board, wheel: Wheel, heading: Heading, left: float) -> None:
-    """Draw on a `board` the tolerance frames of a `heading` at a `wheel`, its section at `left`."""
-    notes, part = heading.notes, wheel.part
+def frames(board: Board, wheel: Wheel, heading: Heading, left: float, walls: Plane) -> None:
+    """Draw on a `board` the tolerance frames of a `heading`.
+
+    Parameters
+    ----------
+    board : Board
+        The sheet.
+    wheel : Wheel
+        The part.
+    heading : Heading
+        With the tolerances.
+    left : float, mm
+        Where its section begins.
+    walls : (n,) complex array, mm
+        The outline, or a wall of the groove, on the sheet.
+    """
+    notes = heading.notes
     if notes.profile_tolerance:
-        spot = complex(wheel.points[np.argmax((wheel.points * cmath.rect(1.0, -0.7)).real)])
-        related = ("A",) if wheel.bore else ()
+        spot = complex(walls[np.argmax((walls * cmath.rect(1.0, -0.7)).real)])
+        related = (DATUM,) if wheel.bore else ()
         frame(board, spot, "profile", fine(notes.profile_tolerance), *related)
     if notes.runout and wheel.turns and wheel.bore:
-        back = left + (part.hub.back if part.hub else 0.0)
-        top = max(float(ends[-1]) for ends, _ in wheel.section.slabs if len(ends))
-        # of an outline that is not round, that of the face
-        spot = complex(back + 0.5 * part.width, top) if wheel.round else back + 0.95j * top
-        frame(board, spot, "runout", fine(notes.runout), "A")
+        spot, way = _running(wheel, OVERHANG * board.unit)
+        spot += left - wheel.part.ends[0]
+        frame(board, spot, "runout", fine(notes.runout), DATUM, angles=way + _FAN)
+
+
+def _running(wheel: Wheel, least: float) -> tuple[complex, float]:
+    """Return a point of the section where it is cut outside, and the direction away from it.
+
+    On the outside if it is a cylinder, at least a length `least` of it, mm; else on the back.
+    """
+    (middles, ways), flat = wheel.edges, _FLAT * wheel.high.imag
+    long = np.abs(ways)
+    outside = np.abs(middles.imag - wheel.high.imag) + np.abs(ways.imag) < flat
+    cylinder = wheel.round and (long * outside).max() > least
+    back = (np.abs(middles.real) + np.abs(ways.real) < flat) & (middles.imag > 0.0)
+    number = int(np.argmax(long * (outside if cylinder else back)))
+    middle, way = complex(middles[number]), complex(ways[number])
+    # beside the title of the section, and beside a hub
+    return middle + 0.4 * math.copysign(1.0, way.real + way.imag) * way, UP if cylinder else math.pi
 
 
 def callouts(board: Board, wheel: Wheel, side: float) -> None:
     """Draw on a `board` the leaders of a `wheel`, whose section begins at x = `side`, mm."""
-    part = wheel.part
+    part, shift = wheel.part, side - wheel.part.ends[0]
     _holes(board, part, wheel.origin)
     if wheel.turns and (part.inner or not wheel.round):
         _radii(board, wheel)
     for opening in part.openings:
         if opening.kind == SLOT and isinstance(opening.shape, Loop):
             _slot(board, opening.shape)
-    if part.screw is not None:
-        up = wheel.screwed[0] * part.screw.edge.reach
-        edge = complex(side - part.ends[0] + part.screw.middle, up)
-        board.label(edge, thread(part.screw))
+    if wheel.shown.screw is not None and part.screw is not None:
+        screw = wheel.shown.screw
+        edge = complex(shift + screw.middle, math.copysign(screw.edge.reach, screw.angle))
+        turned = f"{decimal(math.degrees(part.screw.angle) % 360.0)} deg"
+        board.label(edge, f"set screw {screw.size}")
+        board.rows.append((f"set screw {screw.size}, direction", turned))
     for mark in part.marks:
         words = f"mark {diameter_text(mark.diameter)}, {length_text(mark.depth)} deep"
         board.callout(mark.edge, words, "label")
         board.rows.append((words, position(mark.center - wheel.origin)))
     if part.arrow is not None:
         board.rows.append(("arrow, place by the DXF", f"{length_text(part.arrow.depth)} deep"))
+    for recess in part.recesses:
+        points, words = recess.edge.polyline(part.tolerance), f"{length_text(recess.width)} wide"
+        weights = (points * cmath.rect(1.0, -2.2)).real
+        _at(board, weights - weights.min(), points, "groove ", words)
+    if wheel.unrolled is not None:
+        _groove(board, wheel, wheel.unrolled.groove, shift)
+    if part.chamfer:
+        _chamfer(board, wheel, shift)
+
+
+def _groove(board: Board, wheel: Wheel, groove: GrooveSizes, shift: float) -> None:
+    """Say how wide and deep the groove of a cam in space is, or how high its wall, at the floor."""
+    middles, ways = wheel.edges
+    over = (middles.imag - groove.floor) / groove.depth
+    floor = (over > -_LOW) & (over < 0.5) & (np.abs(ways.real) > np.abs(ways.imag))
+    name, words = "wall ", f"{length_text(groove.depth)} high"
+    if groove.width:
+        name, words = (
+            "groove ",
+            f"{length_text(groove.width)} wide, {length_text(groove.depth)} deep",
+        )
+    _at(board, np.abs(ways.real) * floor, middles + shift, name, words)
+
+
+def _chamfer(board: Board, wheel: Wheel, shift: float) -> None:
+    """Say how large a chamfer is at the one that is farthest up in the section."""
+    (middles, ways), size = wheel.edges, wheel.part.chamfer
+    across, up = np.abs(ways.real), np.abs(ways.imag)
+    slanted = (np.abs(across - up) < _LOW * size) & (up > _LOW * size) & (up < 1.1 * size)
+    faces = np.array([level for one in wheel.part.layers for level in (one.low, one.high)])
+    slanted &= np.abs(middles.real[:, None] - faces).min(axis=1) < size
+    height = middles.imag - middles.imag.min() + 1.0
+    _at(board, height * slanted, middles + shift, "", f"{length_text(size)} x 45°")
+
+
+def _at(board: Board, weights: Array, points: Plane, name: str, words: str) -> None:
+    """Say `words` with a leader to the point of the largest weight; the table, if all are 0."""
+    best, row = int(np.argmax(weights)), (name.strip() or "chamfer", words)
+    if not weights[best] > 0.0:
+        board.rows.append(row)
+    else:
+        board.label(complex(points[best]), f"{name}{words}", row)
+
+
+def direction(board: Board, wheel: Wheel, keyed: Loop, zero: float) -> None:
+    """Draw the angle to a keyway or flat; if it is 0, the table has it.
+
+    Parameters
+    ----------
+    board : Board
+        The sheet.
+    wheel : Wheel
+        The part.
+    keyed : Loop
+        Its bore.
+    zero : float, rad
+        The direction from which the angle is counted.
+    """
+    kind, floor = floor_of(keyed)
+    way = cmath.phase(complex(floor.mean()))
+    turn = math.remainder(way - zero, 2.0 * math.pi)
+    words = f"{decimal(abs(math.degrees(turn)))}°"
+    row = f"{kind}, direction", f"{decimal(math.degrees(way) % 360.0)} deg"
+    away = float(np.abs(keyed.points).max()) + 2.0 * OVERHANG * board.unit
+    away = max(away, 4.0 * ARROW * board.unit / max(abs(turn), SAME))
+    if away > 1.2 * float(np.abs(wheel.points).max()):
+        board.rows.append(row)
+        return
+    board.line(CENTERLINE, 0j, cmath.rect(away + OVERHANG * board.unit, way))
+    arc = away * np.exp(1j * (zero + turn * np.linspace(0.0, 1.0, 37)))
+    board.line(DIMENSION, *arc.tolist())
+    for tip, sense in ((complex(arc[0]), -1.0), (complex(arc[-1]), 1.0)):
+        board.arrow(tip, math.copysign(sense, turn) * 1j * tip / abs(tip))
+    board.label(complex(arc[18]), words, row)
 
 
 def _radii(board: Board, wheel: Wheel) -> None:
@@ -91,10 +244,12 @@ def _radii(board: Board, wheel: Wheel) -> None:
     for radius, word in ((float(reach.max()), "max"), (float(reach.min()), "min")):
         if abs(radius - wheel.tips) < SAME:
             continue  # a diameter
-        # the first of the points on an arc about the axis, not one that rounding chooses
-        point = complex(teeth[np.argmax(np.abs(reach - radius) < SAME)])
+        # all points on arcs about the axis, not the one that rounding chooses
+        alike = teeth[np.abs(reach - radius) < SAME]
+        alike = alike[np.linspace(0, len(alike) - 1, min(_PLACES, len(alike))).astype(int)]
+        point = complex(alike[0])
         circle, words = Circle(center=0j, diameter=2.0 * radius), f"(R{length_text(radius)} {word})"
-        if not board.callout(circle, words, "radius", angles=np.array([cmath.phase(point)])):
+        if not board.callout(circle, words, "radius", angles=np.angle(alike)):
             # a leader without direction to the axis
             board.label(point, words, (f"{word}. radius from axis", length_text(radius)))
 
@@ -177,8 +332,3 @@ def _slot(board: Board, shape: Loop) -> None:
     board.callout(end, words, "radius", row=("slot, width", length_text(width)))
     board.rows.append(("slot, mid radius", length_text(middle)))
     board.rows.append(("slot, ends at", f"{decimal(first)}, {decimal(last)} deg"))
-
-
-def thread(screw: ScrewHole) -> str:
-    """Return the thread of a set screw in words."""
-    return f"set screw {screw.size}"

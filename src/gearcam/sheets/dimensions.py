@@ -136,6 +136,11 @@ def linear(
     )
 
 
+def shelf(label: str) -> float:
+    """Return the length of the line below a text with a leader, mm of paper."""
+    return text_width(label) + GAP
+
+
 def leader(
     circle: Circle, angle: float, knee: float, label: str, kind: str, unit: float
 ) -> SheetDimension:
@@ -156,7 +161,7 @@ def leader(
     """
     center, radius, spoke = circle.center, 0.5 * circle.diameter, cmath.rect(1.0, angle)
     edge, bend = center + radius * spoke, center + knee * spoke
-    wide = text_width(label) * unit
+    wide = shelf(label) * unit
     end = bend + (-wide if (knee - radius) / unit * spoke.real <= UPRIGHT else wide)
     across = kind == "diameter"
     return SheetDimension(

@@ -382,7 +382,7 @@ def _block(board: Board, heading: Heading, corner: complex) -> None:
             _chain(board, RULE, low, top, top + wide)
             _write(board, label, top + INSET - 2.5j, wide - 2 * INSET, SERIES[0])
             tall = 3.5 if label in ("title", "part number") else HEIGHT
-            _write(board, value or "", low + INSET + 1.2j, wide - 2 * INSET, tall)
+            _write(board, value or "", low + INSET + 1.4j, wide - 2 * INSET, tall)
             if label == "projection":
                 _first_angle(board, low + 4.0 + 2.6j)
             if label == "surface texture" and notes.surface:

@@ -15,19 +15,40 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Final
 
+import numpy as np
+
 from gearcam.base.inches import file_unit
-from gearcam.base.numerals import decimal
+from gearcam.numeric.arrays import Plane
 from gearcam.numeric.pose import Pose
+from gearcam.parts.blank import thread_diameter
 from gearcam.parts.body import Hub, Part, ScrewHole
 from gearcam.parts.shafts import keyway_of
 from gearcam.parts.shapes import Circle, Loop, extremes
-from gearcam.pictures.drawings import CENTRODE, box, part_features, place, placed
+from gearcam.pictures.drawings import (
+    BLANK,
+    CENTRODE,
+    PITCH,
+    Path,
+    box,
+    part_features,
+    place,
+    placed,
+)
 from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board
-from gearcam.sheets.callouts import callouts, frames, position, thread, turning_arrow
+from gearcam.sheets.callouts import (
+    PAST_SECTION,
+    callouts,
+    direction,
+    frames,
+    position,
+    turning_arrow,
+    zero_line,
+)
 from gearcam.sheets.dimensions import Measure, diameter_text
 from gearcam.sheets.paper import NO_VALUES, Heading, Values, begin, finish
 from gearcam.sheets.sheet import (
     CENTERLINE,
+    DIMENSION,
     EDGE,
     HEIGHT,
     HIDDEN,
@@ -37,10 +58,11 @@ from gearcam.sheets.sheet import (
     length_text,
     text_width,
 )
+from gearcam.sheets.spec import DrawingNotes
 from gearcam.sheets.symbols import datum, section_letters, section_line
 from gearcam.sheets.wheel import SAME, UP, Sense, Teeth, Unrolled, Wheel, floor_of, holes_of
 
-LEFT: Final = 24.0
+LEFT: Final = 25.0
 BETWEEN: Final = 34.0
 RIGHT: Final = 26.0
 ABOVE: Final = 14.0
@@ -49,9 +71,11 @@ BORE_ROOM: Final = 44.0
 BORE_LEFT: Final = 18.0
 TEXT_ROOM: Final = 8.0
 UNROLLED: Final = 36.0
+DEPTH: Final = 0.7
 """Space for dimensions left of, between, right of and above the views, more below the front view
 for the line of the section, at least for those of the bore's view, of this left of the bore and
-between it and a text, and for those of an unrolled outside, mm of paper."""
+between it and a text, and for those of an unrolled outside; least distance of the lines of a
+thread, mm of paper."""
 
 
 def part_sheet(
@@ -98,7 +122,8 @@ def part_sheet(
     """
     wheel = Wheel(part=part, teeth=teeth, unrolled=unrolled)
     size = wheel.high - wheel.low + part.thickness + (2.0 * wheel.radius if wheel.keyed else 0.0)
-    levels = max(1 + len(part.bosses) + len(part.recesses), 1 + wheel.placed)
+    screws = 1 if part.screw else 0
+    levels = max(1 + len(part.bosses) + len(part.recesses) + screws, 1 + wheel.placed)
     below = BELOW + FIRST_LEVEL + LEVEL * levels
     across = BETWEEN + RIGHT
     if wheel.keyed is not None:
@@ -106,12 +131,14 @@ def part_sheet(
         across += max(BORE_ROOM, BORE_LEFT + TEXT_ROOM + wide)
     rows = len(facts) + len(part.openings) + 2 + values.tall
     outside = box(unrolled.drawing.features)[1] if unrolled else 0j
-    room = complex(LEFT, below + (UNROLLED if unrolled else 0.0)), complex(across, ABOVE)
+    above = ABOVE + LEVEL * screws + (PAST_SECTION if turning and turning.upright else 0.0)
+    room = complex(LEFT, below + (UNROLLED if unrolled else 0.0)), complex(across, above)
     tall = 1j * outside.imag
     board = begin(part.name, size + tall, room, wheel.low - tall, rows, outside.real)
     side = wheel.high.real + BETWEEN * board.unit
+    walls = part.recesses[0].edge.polyline(part.tolerance) if part.recesses else wheel.points
     if unrolled is not None:
-        _unrolled(board, unrolled, wheel.low - 1j * (below + 10.0) * board.unit)
+        walls = _unrolled(board, unrolled, wheel.low - 1j * (below + 10.0) * board.unit)
     _front_view(board, wheel)
     _section(board, wheel, side)
     if wheel.keyed is not None:
@@ -120,25 +147,39 @@ def part_sheet(
         )
     _front_sizes(board, wheel)
     _section_sizes(board, wheel, side)
-    if turning is not None:
-        turning_arrow(board, wheel, turning)
+    zero = zero_line(board, wheel, turning) if turning else 0j
     section_letters(board, wheel.plane, wheel.low.imag, wheel.high.imag)
+    if wheel.keyed is not None:
+        direction(board, wheel, wheel.keyed, turning.zero if turning else 0.0)
+    if turning is not None:
+        turning_arrow(board, wheel, turning, zero)
+    frames(board, wheel, heading, side, walls)
     callouts(board, wheel, side)
     if teeth is not None:
         at = position(teeth.first - wheel.origin)
         board.label(teeth.first, "tooth 1", ("tooth 1, tip", at))
-    frames(board, wheel, heading, side)
-    return finish(board, heading, facts, [*_notes(wheel), *notes], values)
+    return finish(board, heading, facts, [*_notes(wheel, heading.notes), *notes], values)
 
 
-def _notes(wheel: Wheel) -> list[str]:
-    part, chamfer = wheel.part, wheel.part.chamfer
+def _notes(wheel: Wheel, notes: DrawingNotes) -> list[str]:
+    part, name, held = wheel.part, file_unit().name, "none is given"
+    if notes.profile_tolerance:
+        held = "that of its profile"
+    elif notes.general_tolerances:
+        held = "the general one"
+    clearance = wheel.unrolled.groove.clearance if wheel.unrolled else 0.0
+    more = f", {length_text(clearance)} {name}" if clearance else ""
     about = " R, X, Y from the axis; angles from x, to the right." if wheel.turns else ""
     if not wheel.turns and (holes_of(part) or part.marks):
         side = "left" if wheel.origin.real == wheel.low.real else "right"
         about = f" X, Y from the {'cross' if wheel.placed else f'lower {side} corner'}."
     return [
-        *([f"Chamfer {length_text(chamfer)} x 45 deg on both faces."] if chamfer else []),
+        *(["Edges that are shown with a chamfer have it on both faces."] if part.chamfer else []),
+        *(
+            [f"Width of the groove: diameter of the roller and clearance{more}; tolerance: {held}."]
+            if wheel.grooved
+            else []
+        ),
         *(["Holes go right through."] if holes_of(part) else []),
         f"All sizes are finished sizes.{about}",
         *([wheel.unrolled.note] if wheel.unrolled else []),
@@ -184,16 +225,19 @@ def _section(board: Board, wheel: Wheel, left: float) -> None:
     """Draw the section, with its back at x = `left`."""
     part = wheel.part
     shift, end = left - part.ends[0], left + part.thickness
-    cut = wheel.section.metal if wheel.unrolled is None else wheel.unrolled.loops
-    board.hatch([loop + shift for loop in cut])
+    board.hatch([loop + shift for loop in wheel.cut])
     if wheel.unrolled is None:
         for start, stop in wheel.section.lines:
             board.line(EDGE, start + shift, stop + shift)
-    else:
-        for loop in cut:
-            board.line(EDGE, *(loop + shift).tolist(), closed=True)
-        for x in (left, end):
-            board.line(EDGE, complex(x, -wheel.radius), complex(x, wheel.radius))
+    for loop in wheel.unrolled.loops if wheel.unrolled else ():
+        board.line(EDGE, *(loop + shift).tolist(), closed=True)
+    if wheel.bore is not None:
+        top = wheel.bore_top
+        for x, inwards in ((left, part.chamfer), (end, -part.chamfer)):
+            low, high = -1j * (wheel.radius + part.chamfer), 1j * (top + part.chamfer)
+            board.line(EDGE, x + low, x + high)
+            if inwards:
+                board.line(EDGE, x + inwards - 1j * wheel.radius, x + inwards + 1j * top)
     over = OVERHANG * board.unit
     near = [c for c in holes_of(part) if abs(c.center.real - wheel.plane) < 0.5 * c.diameter]
     middles = [*([0.0] if wheel.turns else []), *(circle.center.imag for circle in near)]
@@ -201,15 +245,13 @@ def _section(board: Board, wheel: Wheel, left: float) -> None:
     for y in middles:
         board.line(CENTERLINE, complex(left - over, y), complex(end + over, y))
     if wheel.keyed is not None:
-        _corner(board, wheel, wheel.keyed, left, end)
-    if part.screw is not None:
-        _screw(board, wheel, part.screw, shift)
-    title = complex(0.5 * (left + end), wheel.high.imag + 6.0 * board.unit)
-    board.write(Text(text="A-A", place=title, height=3.5, anchor="middle"))
+        _corner(board, wheel, wheel.keyed, left + part.chamfer, end - part.chamfer)
+    if wheel.shown.screw is not None:
+        _screw(board, wheel, wheel.shown.screw, shift)
 
 
-def _unrolled(board: Board, unrolled: Unrolled, high: complex) -> None:
-    """Draw the unrolled outside of a cam from its upper left corner on."""
+def _unrolled(board: Board, unrolled: Unrolled, high: complex) -> Plane:
+    """Draw the unrolled outside of a cam from its upper left corner on; return its first wall."""
     end = box(unrolled.drawing.features)[1]
     first, last = high - 1j * end.imag, high + end.real
     for feature in place(unrolled.drawing.features, Pose(0.0, first)):
@@ -217,6 +259,10 @@ def _unrolled(board: Board, unrolled: Unrolled, high: complex) -> None:
     around = Measure(first, complex(last.real, first.imag), aside=True)
     board.measure([around], first.imag)
     board.write(Text(text=unrolled.title, place=high + 3.0j * board.unit))
+    shapes = (one.shape for one in unrolled.drawing.features if one.layer not in (BLANK, PITCH))
+    points = next(one.points for one in shapes if isinstance(one, Path)) + first
+    x, y = (points - first).real / end.real, (points - first).imag / end.imag
+    return points[(np.abs(x - 0.5) < 0.45) & (np.abs(y - 0.5) < 0.45)]
 
 
 def _corner(board: Board, wheel: Wheel, bore: Loop, left: float, end: float) -> None:
@@ -228,16 +274,15 @@ def _corner(board: Board, wheel: Wheel, bore: Loop, left: float, end: float) -> 
 
 
 def _screw(board: Board, wheel: Wheel, screw: ScrewHole, shift: float) -> None:
-    """Draw the hole of a set screw, and say its thread and place."""
-    outer, middle, (side, inner) = screw.edge.reach, shift + screw.middle, wheel.screwed
-    for x in (shift + screw.low, shift + screw.high):
-        board.line(EDGE, complex(x, side * inner), complex(x, side * outer))
+    """Draw thread and centre line of a set screw, and say in which direction it is."""
+    outer, side = screw.edge.reach, math.copysign(1.0, screw.angle)
+    inner = wheel.bore_top if side > 0.0 else wheel.radius
     over = OVERHANG * board.unit
-    ends = complex(middle, side * (inner - over)), complex(middle, side * (outer + over))
-    board.line(CENTERLINE, *ends)
-    turned = math.degrees(screw.angle) % 360.0
-    at = f"at {decimal(turned)} deg, z {length_text(screw.middle)} {file_unit().name}"
-    board.rows.append((thread(screw), at))
+    half = max(0.5 * thread_diameter(screw.size), 0.5 * screw.drill + DEPTH * board.unit)
+    lines = (-half, DIMENSION, 0.0), (half, DIMENSION, 0.0), (0.0, CENTERLINE, over)
+    for away, layer, more in lines:
+        x = shift + screw.middle + away
+        board.line(layer, complex(x, side * (inner - more)), complex(x, side * (outer + more)))
 
 
 def _section_sizes(board: Board, wheel: Wheel, left: float) -> None:
@@ -252,7 +297,19 @@ def _section_sizes(board: Board, wheel: Wheel, left: float) -> None:
     if part.bosses:
         lengths.append(Measure(left + foot, end + foot, aside=True))
     lengths += [Measure(back + one.low + floor, back + one.high + floor) for one in part.recesses]
+    screw, top = wheel.shown.screw, wheel.high.imag
+    if screw is not None:
+        reach = 1j * math.copysign(screw.edge.reach, screw.angle)
+        face = end if screw.middle > 0.0 else left
+        place = Measure(face + reach, back + screw.middle + reach)
+        if screw.angle > 0.0:
+            board.measure([place], top, side=1)
+        else:
+            lengths.append(place)
     board.measure(lengths, base)
+    middle, high = 0.5 * (left + end), top + 6.0 * board.unit
+    places = (complex(middle + x * board.unit, high) for x in (0.0, 12.0, -12.0, 24.0, -24.0))
+    board.first_free(Text(text="A-A", place=one, height=3.5, anchor="middle") for one in places)
     plain = wheel.bore and wheel.keyed is None
     beside = [_upright(end, wheel.radius, wheel.bore_text)] if plain else []
     if wheel.tips and part.inner:
@@ -295,4 +352,3 @@ def _bore_view(board: Board, wheel: Wheel, bore: Loop, left: float) -> None:
     datum(board, complex(x - radius, -radius - FIRST_LEVEL * unit), -1.0)
     line = complex(x, -radius - (FIRST_LEVEL + 5.0 + HEIGHT) * unit)
     board.write(Text(text=f"bore, {kind} turned up", place=line, anchor="middle"))
-    board.rows.append((f"{kind}, direction", f"{decimal(math.degrees(way) % 360.0)} deg"))

@@ -70,7 +70,7 @@ HEIGHT: Final = 2.5
 CAPITAL: Final = 0.718
 """Height of a capital over the size of the font."""
 
-GAP: Final = 0.8
+GAP: Final = 1.0
 """Distance from a line to the text above it, mm of paper."""
 
 _WIDTHS: Final = [
@@ -163,9 +163,9 @@ class Text(ShortRepr):
         """
         wide, tall = self.width, self.height
         start = -0.5 * wide if self.anchor == "middle" else 0.0
-        low, high = complex(start, -0.25 * tall), complex(start + wide, tall)
+        low, high = complex(start, -0.3 * tall), complex(start + wide, tall)
         if self.upright:
-            low, high = complex(-tall, start), complex(0.25 * tall, start + wide)
+            low, high = complex(-tall, start), complex(0.3 * tall, start + wide)
         return self.place + unit * low, self.place + unit * high
 
 

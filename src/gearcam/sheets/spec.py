@@ -44,8 +44,8 @@ class DrawingNotes(ShortRepr):
     )
     runout: float | None = _tolerance(
         example=0.03,
-        doc="circular run-out about the bore, the datum A: of the outside if it is round, else of "
-        "the face",
+        doc="circular run-out about the bore, the datum B: of the outside if it is a cylinder, "
+        "else of the face",
     )
     profile_tolerance: float | None = _tolerance(
         example=0.02, doc="tolerance of the form of the outline or groove"

@@ -11,6 +11,7 @@ from typing import Final
 
 import numpy as np
 
+from gearcam.numeric.arrays import Array
 from gearcam.parts.shapes import Circle
 from gearcam.sheets.board import Board
 from gearcam.sheets.dimensions import UPRIGHT
@@ -18,6 +19,9 @@ from gearcam.sheets.sheet import CENTERLINE, CUT, DIMENSION, HEIGHT, Text, text_
 
 FRAME: Final = 2.0 * HEIGHT
 """Height of a tolerance frame, mm of paper."""
+
+DATUM: Final = "B"
+"""Letter of the datum: A is the section."""
 
 
 def section_line(board: Board, x: float, low: float, high: float) -> None:
@@ -49,6 +53,7 @@ def _box(board: Board, low: complex, *cells: str) -> None:
         wide = max(FRAME, text_width(text) + 2.0) if text else FRAME
         corners = (low + unit * at for at in (0.0, wide, complex(wide, FRAME), 1j * FRAME))
         board.line(DIMENSION, *corners, closed=True)
+        board.take(low, low + unit * complex(wide, FRAME))
         if text:
             place = low + complex(0.5 * wide, 0.5 * (FRAME - HEIGHT)) * unit
             board.write(Text(text=text, place=place, anchor="middle"))
@@ -56,17 +61,19 @@ def _box(board: Board, low: complex, *cells: str) -> None:
 
 
 def datum(board: Board, point: complex, way: complex) -> None:
-    """Draw on a `board` the datum A at a `point`, mm, on the side of the unit vector `way`."""
+    """Draw on a `board` the datum at a `point`, mm, on the side of the unit vector `way`."""
     unit = board.unit
     side, back = 1.5j * way * unit, point + 2.6 * way * unit
     board.fills.append(np.array([point + side, point - side, back]))
     stem = back + 3.0 * way * unit
     board.line(DIMENSION, back, stem)
     middle = stem + 0.5 * FRAME * way * unit
-    _box(board, middle - 0.5 * FRAME * unit * (1.0 + 1j), "A")
+    _box(board, middle - 0.5 * FRAME * unit * (1.0 + 1j), DATUM)
 
 
-def frame(board: Board, point: complex, kind: str, *cells: str) -> None:
+def frame(
+    board: Board, point: complex, kind: str, *cells: str, angles: Array | None = None
+) -> None:
     """Draw a tolerance frame with a leader to a `point`; the table says it if there is no space.
 
     Parameters
@@ -79,11 +86,13 @@ def frame(board: Board, point: complex, kind: str, *cells: str) -> None:
         Circular run-out, or the profile of a line.
     *cells : str
         The tolerance, and the datum if it has one.
+    angles : (n,) array, rad, optional
+        Allowed directions of the leader from the point; any by default.
     """
     unit = board.unit
     wide = FRAME + sum(max(FRAME, text_width(one) + 2.0) for one in cells)
     spot = Circle(center=point, diameter=0.02 * unit)
-    found = board.place(spot, complex(wide, FRAME))
+    found = board.place(spot, complex(wide, FRAME), angles)
     if found is None:
         name = {"runout": "circular run-out", "profile": "profile of the outline"}[kind]
         board.rows.append((name, " ".join(cells)))

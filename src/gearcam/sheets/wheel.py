@@ -17,9 +17,9 @@ import numpy as np
 from gearcam.base.errors import InfeasibleError
 from gearcam.numeric.arrays import Plane, bounds
 from gearcam.numeric.pose import Pose
-from gearcam.parts.body import Bevel, Opening, Part, ScrewHole
+from gearcam.parts.body import Layer, Opening, Part, ScrewHole
 from gearcam.parts.shapes import Circle, Loop, true_points
-from gearcam.pictures.drawings import BORE, HOLE, Drawing, Path, chains, placed
+from gearcam.pictures.drawings import BORE, GROOVE, HOLE, Drawing, Path, chains, placed
 from gearcam.sheets.dimensions import diameter_text
 from gearcam.sheets.sections import Section, chain_crossings, crossings
 from gearcam.sheets.sheet import fine, length_text
@@ -33,6 +33,12 @@ _PLANES: Final = 10
 
 UP: Final = 0.5 * math.pi
 
+_ALONG: Final = 0.25
+"""Cosine of the angle between a direction and the section below which they are one line."""
+
+_OVER: Final = 0.995
+"""Cosine of the angle between a set screw and a keyway that it is over."""
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Sense:
@@ -40,6 +46,31 @@ class Sense:
 
     zero: float
     clockwise: bool
+
+    @property
+    def upright(self) -> bool:
+        """Whether the direction is that of the section."""
+        return abs(math.cos(self.zero)) < _ALONG
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class GrooveSizes:
+    """The groove of a cam in space.
+
+    Parameters
+    ----------
+    width, depth : float, mm
+        Its width, 0 if it has one wall, and its depth.
+    floor : float, mm
+        Least radius of its floor.
+    clearance : float, mm
+        Its width less the diameter of the roller.
+    """
+
+    width: float
+    depth: float
+    floor: float
+    clearance: float
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -85,12 +116,15 @@ class Unrolled:
         What is written above that.
     note : str
         Where its walls are given.
+    groove : GrooveSizes
+        The sizes of its groove.
     """
 
     loops: Sequence[Plane]
     drawing: Drawing
     title: str
     note: str
+    groove: GrooveSizes
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -180,19 +214,6 @@ class Wheel:
         return fitted(length_text(float(abs(end - start))), self.fits.get("keyway"))
 
     @property
-    def screwed(self) -> tuple[float, float]:
-        """Where the section shows the set screw: above the axis, or beside a keyway below; from.
-
-        The side, 1 or -1, and the distance of the bore from the axis there, mm.
-        """
-        if self.keyed is None or self.part.screw is None:
-            return 1.0, self.radius
-        floor = complex(floor_of(self.keyed)[1].mean())
-        way = cmath.rect(1.0, self.part.screw.angle)
-        over = abs(cmath.phase(floor * way.conjugate())) < 0.1
-        return (1.0, abs(floor)) if over else (-1.0, self.radius)
-
-    @property
     def keyed(self) -> Loop | None:
         """The bore if it is not round."""
         shape = self.bore.shape if self.bore else None
@@ -206,6 +227,11 @@ class Wheel:
         return self.bore.shape.reach if self.bore else 0.0
 
     @property
+    def bore_top(self) -> float:
+        """How far up from the axis the section shows the bore, mm."""
+        return self.radius if self.keyed is None else float(abs(floor_of(self.keyed)[1].mean()))
+
+    @property
     def plane(self) -> float:
         """Where the section is, x, mm; without axis and holes where it cuts most metal."""
         if self.turns:
@@ -216,16 +242,16 @@ class Wheel:
         return max(tried, key=lambda x: float(np.diff(crossings(edge, x, tolerance))[::2].sum()))
 
     @cached_property
+    def shown(self) -> Part:
+        """The part as its section shows it (see `upright`)."""
+        return upright(self.part)
+
+    @cached_property
     def section(self) -> Section:
-        """What the plane cuts, a keyway or flat turned into it."""
-        part = self.part
-        if self.keyed is not None:
-            turn = Pose(UP - cmath.phase(complex(floor_of(self.keyed)[1].mean())))
-            turned = replace(cast("Opening", self.bore), shape=placed(self.keyed, turn))
-            others = (turned if one is self.bore else one for one in part.openings)
-            part = replace(part, openings=tuple(others))
-        # a note states chamfers; a set screw is turned into the plane
-        pockets = [one for one in part.pockets if not isinstance(one, Bevel | ScrewHole)]
+        """What the plane cuts."""
+        part, pockets = self.shown, list(self.shown.pockets)
+        if part.screw is not None:
+            pockets[-1] = _hole_of(part.screw)
         return Section(
             layers=part.layers,
             pockets=pockets,
@@ -238,6 +264,61 @@ class Wheel:
     def cut_teeth(self) -> list[tuple[float, float, float]]:
         """Where the plane crosses pitch curve, roots and tips (see `Teeth.at`)."""
         return self.teeth.at(self.plane) if self.teeth else []
+
+    @property
+    def grooved(self) -> bool:
+        """Whether it has a groove for a roller."""
+        if self.unrolled is not None:
+            return self.unrolled.groove.width > 0.0
+        return bool(self.part.recesses) or any(one.kind == GROOVE for one in self.part.openings)
+
+    @property
+    def cut(self) -> Sequence[Plane]:
+        """The cut metal as closed loops, z and y, mm, from the back of the plate."""
+        return self.section.metal if self.unrolled is None else self.unrolled.loops
+
+    @cached_property
+    def edges(self) -> tuple[Plane, Plane]:
+        """Middles of the straight edges of the cut metal, and the way along each, mm."""
+        starts = np.concatenate(self.cut)
+        ways = np.concatenate([np.roll(loop, -1) for loop in self.cut]) - starts
+        return starts + 0.5 * ways, ways
+
+
+def upright(part: Part) -> Part:
+    """Return a part as its section shows it.
+
+    A keyway or flat is turned to the top, and a set screw too, or to the bottom if it is beside it.
+    """
+    bore = next((one for one in part.openings if one.kind == BORE), None)
+    if bore is None:
+        return part
+    turn, aside = Pose(0.0), False
+    if isinstance(bore.shape, Loop):
+        way = cmath.phase(complex(floor_of(bore.shape)[1].mean()))
+        turn = Pose(UP - way)
+        aside = part.screw is not None and math.cos(part.screw.angle - way) < _OVER
+    there = replace(bore, shape=placed(bore.shape, turn))
+    bevels = [
+        replace(one, edge=there.shape, face=placed(one.face, turn))
+        if one.edge is bore.shape
+        else one
+        for one in part.bevels
+    ]
+    return replace(
+        part,
+        openings=tuple(there if one is bore else one for one in part.openings),
+        bevels=tuple(bevels),
+        screw=part.screw and replace(part.screw, angle=-UP if aside else UP),
+    )
+
+
+def _hole_of(screw: ScrewHole) -> Layer:
+    """Return the hole of a screw that is turned up or down, as what a section cuts from a part."""
+    side = math.copysign(1.0, screw.angle)
+    half, end = side * screw.drill, 1j * side * screw.edge.reach
+    corners = np.array([-half, half, half + end, end - half])
+    return Layer(edge=Loop(points=corners, bulges=np.zeros(4)), low=screw.low, high=screw.high)
 
 
 def check_runout(notes: DrawingNotes, parts: Sequence[Part]) -> None:

@@ -60,7 +60,7 @@ def test_the_area_of_a_section_is_that_of_its_parts(x: float) -> None:
 
 def test_a_section_beside_a_hole_does_not_show_it() -> None:
     ends = section(DISC, 4.5).slabs[0][0]
-    assert len(ends) == 4  # two pairs: beside the bore, not the hole
+    assert ends.shape == (2, 4)  # two pairs: beside the bore, not the hole
 
 
 @pytest.mark.parametrize("make", [lambda: DISC, lambda: Part(

@@ -177,7 +177,7 @@ def test_narrow_dimensions_have_their_text_and_arrows_outside() -> None:
     narrow, wide = board.dimensions
     assert narrow.text.box(1.0)[0].real > 40.0  # beyond what crosses it
     assert narrow.heads[0][1].real < 0.0
-    assert wide.text.place == pytest.approx(20.0 + 1j * (-19.0 + 0.8))
+    assert wide.text.place == pytest.approx(20.0 + 1j * (-19.0 + 1.0))
     assert wide.heads[0][1].real > 0.0
 
 

@@ -224,7 +224,7 @@ def scene(result: GloboidalCamResult, places: int = PLACES) -> Scene:
 SHEET_ROWS: Final = (
     "indexer.stops", "indexer.index_deg", "indexer.dwell_deg", "indexer.step_deg",
     "indexer.backlash_deg", "cam.rotation", "cam.center_distance_mm", "cam.core_radius_mm",
-    "cam.top_mm", "cam.floor_mm", "cam.roller_radius_mm", "cam.groove_width_mm",
+    "cam.top_mm", "cam.floor_mm", "cam.roller_radius_mm",
     "cam.pressure_angle_deg.max", "solid.mass_kg",
 )  # fmt: skip
 """Facts in the table of the workshop drawing."""
@@ -233,6 +233,7 @@ SHEET_ROWS: Final = (
 def sheets(result: GloboidalCamResult) -> tuple[Sheet, ...]:
     """Return the workshop drawing of a `result`."""
     from gearcam.kinds.gridded_sheet import cam_sheet
+    from gearcam.sheets.wheel import GrooveSizes
 
     cam = result.cam
     drawing = Drawing(name="cam", features=chained(sheet(cam), *grooves(cam), *paths(cam)))
@@ -241,4 +242,10 @@ def sheets(result: GloboidalCamResult) -> tuple[Sheet, ...]:
         "globoid unrolled",
         "Unrolled: through the rollers' middle, not true. Walls: walls.csv, and the solid.",
     )
-    return (cam_sheet(result, max(result.rims), drawing, SHEET_ROWS, tabled, texts),)
+    groove = GrooveSizes(
+        width=2.0 * cam.tool.radius,
+        depth=cam.floor - cam.top,
+        floor=cam.distance - cam.floor,
+        clearance=cam.clearance,
+    )
+    return (cam_sheet(result, max(result.rims), drawing, SHEET_ROWS, tabled, texts, groove),)

@@ -214,7 +214,7 @@ def scene(result: SpatialCamResult, places: int = PLACES) -> Scene:
 
 SHEET_ROWS: Final = (
     "motion.total_lift", "cam.rotation", "cam.roller_radius_mm", "cam.cone_deg",
-    "cam.groove_width_mm.outer", "cam.groove_width_mm.floor", "cam.floor_radius_mm", "cam.rib_mm",
+    "cam.groove_width_mm.floor", "cam.rib_mm",
     "cam.pressure_angle_deg.max", "cam.lost_motion_mm", "solid.mass_kg",
 )  # fmt: skip
 """Facts in the table of the workshop drawing."""
@@ -223,14 +223,20 @@ SHEET_ROWS: Final = (
 def sheets(result: SpatialCamResult) -> tuple[Sheet, ...]:
     """Return the workshop drawing of a `result`."""
     from gearcam.kinds.gridded_sheet import cam_sheet
+    from gearcam.sheets.wheel import GrooveSizes
 
-    scale, unit = result.lift_unit
+    cam, (scale, unit) = result.cam, result.lift_unit
     tabled = "lift", unit, lambda at: scale * result.program.derivatives(at, 0)[0]
     if not result.design.follower.oscillating:
         tabled = "z", "mm", lambda at: centers(result, at).imag
+    radius, outside = cam.outer_radius, developed_drawing(result)
+    wide = 2.0 * cam.tool.radius_at(radius) if len(cam.sides) > 1 and not cam.apart else 0.0
+    groove = GrooveSizes(
+        width=wide, depth=radius - cam.floor, floor=cam.floor, clearance=cam.clearance
+    )
     texts = (
         "outside unrolled",
         "Chain line: roller's middle. Walls: walls.csv, and the solid. z from the back.",
     )
-    radius, outside = result.cam.outer_radius, developed_drawing(result)
-    return (cam_sheet(result, radius, outside, SHEET_ROWS, tabled, texts),)
+    rows = [one for one in SHEET_ROWS if cam.roller.half_angle or not one.endswith("floor")]
+    return (cam_sheet(result, radius, outside, rows, tabled, texts, groove),)

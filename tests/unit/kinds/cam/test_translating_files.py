@@ -96,7 +96,7 @@ def test_the_sheet_shows_the_origin_of_its_bolts() -> None:
     assert any("X, Y from the cross" in text.text for text in sheet.texts)
     bolts = "bolts = 2\nbolt_diameter_mm = 6.6\nbolt_spacing_mm = 160\nbolt_height_mm = 8\n"
     bare = built(PLATE, (bolts, ""))
-    assert len(sheet_of(bare.part).dimensions) == 4
+    assert len(sheet_of(bare.part).dimensions) == 5
 
 
 def test_three_points_tell_the_curvature_of_an_open_pitch_curve() -> None:

@@ -126,8 +126,6 @@ class Groove(Form[GrooveCam, GrooveSpec, GrooveFollower]):
     }
     rows = (
         "cam.outer_diameter_mm",
-        "cam.groove.width_mm",
-        "cam.groove.depth_mm",
         "cam.roller2_radius_mm",
         "cam.roller_clearance_mm",
         "cam.lost_motion",

@@ -284,6 +284,11 @@ class Translating(Form[TranslatingCam, PlateSpec, PlateFollower]):
             tolerance=self.chord_tolerance,
         )
 
+    def rows_of(self, number: int) -> Sequence[str]:
+        """Return the names of the facts in the table of its drawing (see `Form.rows_of`)."""
+        drawn = (".groove.width_mm", ".groove.depth_mm") if self.given.groove_depth else ()
+        return [name for name in super().rows_of(number) if not name.endswith(drawn)]
+
     def parts(self, cam: TranslatingCam) -> tuple[Part, ...]:
         """Return the plate, with its wall or its groove, and its bolts."""
         from gearcam.parts.body import Opening, Part, Recess
