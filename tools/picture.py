@@ -12,10 +12,12 @@ import re
 import shutil
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
+import pypdfium2
 from PIL import Image
 from selenium.webdriver import Chrome
 from selenium.webdriver.chrome.options import Options
@@ -63,8 +65,15 @@ DRAWN = {
 }
 """Pictures of assembled parts: profile, and width in pixels."""
 
-MEASURED = "shop_order"
-"""Profile of the picture of what is measured."""
+ORDERED = "shop_order"
+"""Profile of the pictures of what is measured, and of a workshop drawing."""
+
+FITS = {
+    "blank.bore_diameter_mm": ["25 H7", "20 H7"],
+    "blank.keyway_width_mm": ["8 JS9", "6 JS9"],
+    "blank.keyway_depth_mm": [3.3, 2.8],
+}
+"""What its drawing has beside the table in docs/drawings.md."""
 
 
 _PLACE_OF_SOLIDS = """
@@ -181,6 +190,18 @@ def measured(profile: Path) -> str:
     return sized(svg_bytes(drawing, title=title, labels=labels).decode(), 560)
 
 
+def sheet(profile: Path, folder: str) -> bytes:
+    """Return the workshop drawing of the driver of a pair as in docs/drawings.md, PNG."""
+    (block,) = re.findall(r"```toml\n(.*?)```", (ROOT / "docs/drawings.md").read_text(), re.DOTALL)
+    notes = {f"drawing.{key}": value for key, value in tomllib.loads(block)["drawing"].items()}
+    made = gearcam.build(gearcam.load(profile).with_({**FITS, **notes}))
+    written = made.write(folder, files=["drawing-pdf"])
+    (page,) = pypdfium2.PdfDocument(written.directory / "gear1_drawing.pdf")
+    small = io.BytesIO()
+    page.render(scale=2, grayscale=True).to_pil().quantize(8).save(small, "PNG", optimize=True)
+    return small.getvalue()
+
+
 if __name__ == "__main__":
     with TemporaryDirectory() as folder:
         PICTURE.write_bytes(taken(report(PROFILE, folder), PLACE))
@@ -191,7 +212,9 @@ if __name__ == "__main__":
         table = report(PROFILES / "globoidal_indexer.toml", folder)
         (PICTURES / "globoidal_cam.png").write_bytes(taken(table, 30.0, (1100, 4000), solid=True))
         (PICTURES / "live_view.png").write_bytes(live_view(folder))
-        picture = measured(PROFILES / f"{MEASURED}.toml")
+        ordered = PROFILES / f"{ORDERED}.toml"
+        (PICTURES / "drawing.png").write_bytes(sheet(ordered, folder))
+        picture = measured(ordered)
         (PICTURES / "measuring.svg").write_text(picture, "utf-8")
         for name, (profile, width) in DRAWN.items():
             picture = drawn(PROFILES / f"{profile}.toml", width, folder)

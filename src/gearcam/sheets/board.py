@@ -182,10 +182,17 @@ class Board(Sheet):
             self.rows.append(row)
         return found is not None
 
-    def label(self, point: complex, text: str, row: tuple[str, str] | None = None) -> bool:
+    def label(
+        self,
+        point: complex,
+        text: str,
+        row: tuple[str, str] | None = None,
+        *,
+        angles: Array | None = None,
+    ) -> bool:
         """Return whether a `text` with a leader to a `point`, mm, is drawn (see `callout`)."""
         spot = Circle(center=point, diameter=0.02 * self.unit)
-        return self.callout(spot, text, "label", row=row)
+        return self.callout(spot, text, "label", row=row, angles=angles)
 
     def place(
         self, circle: Circle, size: complex, angles: Array | None = None, reaches: Array = _REACHES

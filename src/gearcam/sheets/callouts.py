@@ -250,8 +250,9 @@ def _radii(board: Board, wheel: Wheel) -> None:
         point = complex(alike[0])
         circle, words = Circle(center=0j, diameter=2.0 * radius), f"(R{length_text(radius)} {word})"
         if not board.callout(circle, words, "radius", angles=np.angle(alike)):
-            # a leader without direction to the axis
-            board.label(point, words, (f"{word}. radius from axis", length_text(radius)))
+            # a leader away from the part, not quite from the axis
+            row, outwards = (f"{word}. radius from axis", length_text(radius)), cmath.phase(point)
+            board.label(point, words, row, angles=outwards + _FAN)
 
 
 def _holes(board: Board, part: Part, origin: complex) -> None:

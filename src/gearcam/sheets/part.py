@@ -69,7 +69,7 @@ ABOVE: Final = 14.0
 BELOW: Final = 5.0
 BORE_ROOM: Final = 44.0
 BORE_LEFT: Final = 18.0
-TEXT_ROOM: Final = 8.0
+TEXT_ROOM: Final = 6.0
 UNROLLED: Final = 36.0
 DEPTH: Final = 0.7
 """Space for dimensions left of, between, right of and above the views, more below the front view
