@@ -12,6 +12,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.numerals import decimal
+from gearcam.designs.outputs import MESHES
 from gearcam.kinds.gridded import STEM, GriddedCam
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.pose import Pose
@@ -60,7 +61,7 @@ def cam_sheet(
     tabled : (str, str, callable)
         What is tabled, its unit, and its values at cam angles, rad.
     texts : (str, str)
-        What is written above the unrolled outside, and where its walls are given.
+        What is written above the unrolled outside, and what a note says of it.
     groove : GrooveSizes
         The sizes of its groove.
 
@@ -98,11 +99,14 @@ def cam_sheet(
     # the roller runs round a cam against its rotation
     theta_there = "0 to 360" if result.cam.clockwise else "360 to 0"
     title = f"{texts[0]}, azimuth 0 to 360 deg, theta {theta_there} deg"
+    files = ["walls.csv"] if "csv" in design.output.files else []
+    files += [f"{STEM}.{word}" for word in ("step", *MESHES) if word in design.output.files]
+    note = f"{texts[1]} Walls: {', '.join(files) or 'walls.csv (not written with this drawing)'}."
     return part_sheet(
         part,
         sheet_rows(result.facts, rows),
         Heading(title=design.name, notes=design.drawing),
         turning=Sense(zero=0.0, clockwise=result.cam.clockwise),
         values=Values(title=("theta, deg", f"{name}, {unit}"), rows=table),
-        unrolled=Unrolled(loops=loops, drawing=unrolled, title=title, note=texts[1], groove=groove),
+        unrolled=Unrolled(loops=loops, drawing=unrolled, title=title, note=note, groove=groove),
     )

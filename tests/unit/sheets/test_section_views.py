@@ -162,3 +162,16 @@ def test_no_letter_stands_for_section_and_datum() -> None:
 
 def test_a_section_without_layers_in_the_plane_is_empty() -> None:
     assert Section(layers=[], pockets=[], x=0.0, tolerance=1e-3).metal == []
+
+
+@pytest.mark.parametrize(
+    ("files", "named"),
+    [
+        (["step", "csv", "drawing-svg"], "walls.csv, cam.step."),
+        (["stl", "drawing-svg"], "cam.stl."),
+        (["drawing-svg"], "walls.csv (not written with this drawing)."),
+    ],
+)
+def test_the_files_with_the_walls_of_a_cam_are_named(files: list[str], named: str) -> None:
+    texts = " ".join(one.text for one in sheet_of("cylinder_cam", output__files=files).texts)
+    assert f"Walls: {named}" in texts

@@ -240,7 +240,7 @@ def sheets(result: GloboidalCamResult) -> tuple[Sheet, ...]:
     tabled = "turret", "deg", lambda at: np.degrees(result.program.derivatives(at, 0)[0])
     texts = (
         "globoid unrolled",
-        "Unrolled: through the rollers' middle, not true. Walls: walls.csv, and the solid.",
+        "Unrolled: through the rollers' middle, not true.",
     )
     groove = GrooveSizes(
         width=2.0 * cam.tool.radius,

@@ -236,7 +236,7 @@ def sheets(result: SpatialCamResult) -> tuple[Sheet, ...]:
     )
     texts = (
         "outside unrolled",
-        "Chain line: roller's middle. Walls: walls.csv, and the solid. z from the back.",
+        "Chain line: roller's middle; z from the back.",
     )
     rows = [one for one in SHEET_ROWS if cam.roller.half_angle or not one.endswith("floor")]
     return (cam_sheet(result, radius, outside, rows, tabled, texts, groove),)
