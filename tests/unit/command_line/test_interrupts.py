@@ -182,7 +182,7 @@ def test_ctrl_c_while_the_command_is_loaded(tmp_path: Path) -> None:
 def test_the_view_ends_its_workers_at_once(tmp_path: Path, name: str, code: int) -> None:
     """Ctrl-C is how a view ends; a worker that is in the middle of a build is not waited for."""
     pair = PAIR.format(eccentricity=0.3, bore=8, files="[]")
-    (tmp_path / "pair.toml").write_text(pair.replace("[22, 22]", "[9999, 9999]"))
+    (tmp_path / "pair.toml").write_text(pair.replace("[22, 22]", "[3000, 3000]"))
     command = [sys.executable, "-m", "gearcam", "view", "--no-browser", "pair.toml"]
     process = subprocess.Popen(
         command, cwd=tmp_path, env=ENVIRONMENT, text=True,
