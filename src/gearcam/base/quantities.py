@@ -289,7 +289,7 @@ def described(owner: type, source: str = "") -> type:
     Parameters
     ----------
     owner : type
-        A class; what its docstring has already is not added. What is fixed becomes an attribute.
+        A class; what its docstring has already is not added.
     source : str
         Lines of the section References; none by default.
 
@@ -306,28 +306,16 @@ def described(owner: type, source: str = "") -> type:
         if "param" in field.metadata and field.name not in documented
     ]
     head, title, examples = doc.partition("\n\nExamples\n")
-    head, attributes = _without_fixed(head, owner)
+    head, section, attributes = head.partition("\n\nAttributes\n")
     if entries:
         start = "\n" if "\nParameters\n" in head else "\n\nParameters\n----------\n"
         head += start + "\n".join(entries)
-    head += attributes
+    head += section + attributes
     if source and "\nReferences\n" not in head:
         head += f"\n\nReferences\n----------\n{source}"
     if title or head != doc:
         owner.__doc__ = head + title + examples
     return owner
-
-
-def _without_fixed(doc: str, owner: type) -> tuple[str, str]:
-    """Return a docstring without what its class has but does not take, and a section with that."""
-    every = dataclasses.fields(owner) if dataclasses.is_dataclass(owner) else ()
-    names = {one.name for one in every if not one.init and "\nAttributes\n" not in doc}
-    entries = re.findall(r"^([\w, ]+)((?: : .*)?(?:\n    .*)+)", doc, re.MULTILINE)
-    fixed = [name + rest for name, rest in entries if {*name.split(", ")} <= names]
-    for one in fixed:
-        doc = doc.replace(f"\n{one}", "")
-    doc = doc.removesuffix("\n\nParameters\n----------")
-    return doc, "\n\nAttributes\n----------\n" * bool(fixed) + "\n".join(fixed)
 
 
 def _type_of(field: dataclasses.Field[Any]) -> str:

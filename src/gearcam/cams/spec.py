@@ -200,7 +200,7 @@ class FollowerSpec(ShortRepr):
 class PlateFollower(FollowerSpec):
     """A round follower over a translating cam.
 
-    Parameters
+    Attributes
     ----------
     offset, face_offset : float, mm
         It has none.

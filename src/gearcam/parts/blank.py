@@ -311,7 +311,7 @@ class ShaftBlank(ShortRepr, Fitted):
 class CylinderBlank(ShaftBlank):
     """Bore, hub, holes, marks and material of a cam in space.
 
-    Parameters
+    Attributes
     ----------
     stop_pin, timing_marks, mark_diameter, clearance, clearance_bores, tip_rounding
         They belong to edges that are cut, and to teeth.
@@ -331,7 +331,7 @@ class CylinderBlank(ShaftBlank):
 class WheelBlank(ShaftBlank):
     """Bore, hub, holes, marks and edges of one wheel, mm and rad; 0 or None means none.
 
-    Parameters
+    Attributes
     ----------
     zero_mark
         A wheel has timing marks.
@@ -367,7 +367,7 @@ class WheelBlank(ShaftBlank):
 class RowBlank(ShortRepr, Fitted):
     """A row of mounting holes in what slides.
 
-    Parameters
+    Attributes
     ----------
     height : float or None, mm
         Of what they are in; each has its own.

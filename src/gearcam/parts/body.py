@@ -466,6 +466,11 @@ class Part(ShortRepr, NotebookView):
         )
 
     @property
+    def bore(self) -> Opening | None:
+        """The bore."""
+        return next((one for one in self.openings if one.kind == "BORE"), None)
+
+    @property
     def smooth_bevels(self) -> tuple[Bevel, ...]:
         """The chamfers of round edges, bores and profiles, not those of teeth."""
         return tuple(

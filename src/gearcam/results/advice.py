@@ -99,14 +99,17 @@ class Remedy(ShortRepr):
         return text.partition(" = ")[2] if len(differing) == 1 == len(self.changes) else text
 
     def _written(self, changes: Changes) -> Changes:
-        """Return changes as a file has them: both values of what has two."""
+        """Return changes as a file has them: both values of what has two, lists that are whole."""
         written = dict[str, Any]()
         for key, value in changes.items():
-            name, _, index = key.removesuffix("]").partition("[")
-            alone = index in ("0", "1")
-            two = value_at(document_of(self.design), key_mm(name)) if alone else None
-            if isinstance(two, list) and len(two) == 2:
-                own = two if key_mm(name) == name else value_in(key_mm(name), two)
+            found = re.fullmatch(r"([^\[]+)\[(\d+)\]", key)
+            name, index = found.groups() if found else (key, "")
+            items = value_at(document_of(self.design), key_mm(name)) if found else None
+            of_all = isinstance(items, list) and all(
+                f"{name}[{number}]" in changes for number in range(len(items))
+            )
+            if of_all or (isinstance(items, list) and len(items) == 2):
+                own = value_in(key_mm(name), items) if key_mm(name) != name else items
                 written.setdefault(name, list(own))[int(index)] = value
             else:
                 written[key] = value
@@ -245,18 +248,6 @@ def demand_files(result: Result) -> None:
     for kind in result.design.output.files:
         if kind in demands:
             demands[kind](result)
-
-
-def _in_lists(changes: Changes, document: Mapping[str, Any]) -> Changes:
-    """Return `changes` of all items of a list in a `document` as one of the list."""
-    items: dict[str, list[Any]] = {}
-    for key in sorted(changes):
-        if found := re.fullmatch(r"([^\[]+)\[\d\]", key):
-            items.setdefault(found[1], []).append(changes[key])
-    lists = {
-        key: of for key, of in items.items() if len(of) == len(value_at(document, key_mm(key)))
-    }
-    return together(changes, lists)
 
 
 class Advice:
@@ -499,14 +490,12 @@ class Search:
             self.tried |= dict.fromkeys(other.tried)
             design = self.result.design
             for remedy in other.found:
-                document = document_of(remedy.design)
-                both = _in_lists(together(changes, remedy.changes), document)
-                less = _in_lists(together(changes, remedy.less), document)
+                both = together(changes, remedy.changes)
                 self.found.append(
                     replace(
                         remedy,
                         changes=both,
-                        less=less if remedy.less else {},
+                        less=together(changes, remedy.less) if remedy.less else {},
                         moves=remedy.moves or self.advice.moves(changes_mm(changes), design),
                         resized=remedy.resized or self.advice.resized(changes_mm(changes), design),
                         design=design.with_(both),

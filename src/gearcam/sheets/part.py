@@ -229,15 +229,12 @@ def _section(board: Board, wheel: Wheel, left: float) -> None:
     if wheel.unrolled is None:
         for start, stop in wheel.section.lines:
             board.line(EDGE, start + shift, stop + shift)
-    for loop in wheel.unrolled.loops if wheel.unrolled else ():
-        board.line(EDGE, *(loop + shift).tolist(), closed=True)
-    if wheel.bore is not None:
-        top = wheel.bore_top
-        for x, inwards in ((left, part.chamfer), (end, -part.chamfer)):
-            low, high = -1j * (wheel.radius + part.chamfer), 1j * (top + part.chamfer)
-            board.line(EDGE, x + low, x + high)
-            if inwards:
-                board.line(EDGE, x + inwards - 1j * wheel.radius, x + inwards + 1j * top)
+    else:
+        for loop in wheel.unrolled.loops:
+            board.line(EDGE, *(loop + shift).tolist(), closed=True)
+        _behind(board, wheel, left, end, part.chamfer)
+    if part.chamfer:
+        _behind(board, wheel, left + part.chamfer, end - part.chamfer, 0.0)
     over = OVERHANG * board.unit
     near = [c for c in holes_of(part) if abs(c.center.real - wheel.plane) < 0.5 * c.diameter]
     middles = [*([0.0] if wheel.turns else []), *(circle.center.imag for circle in near)]
@@ -248,6 +245,14 @@ def _section(board: Board, wheel: Wheel, left: float) -> None:
         _corner(board, wheel, wheel.keyed, left + part.chamfer, end - part.chamfer)
     if wheel.shown.screw is not None:
         _screw(board, wheel, wheel.shown.screw, shift)
+
+
+def _behind(board: Board, wheel: Wheel, left: float, end: float, chamfer: float) -> None:
+    """Draw the edges of the bore behind the plane at x = `left` and `end`, wider by a `chamfer`."""
+    if wheel.bore is not None:
+        low, high = -1j * (wheel.radius + chamfer), 1j * (wheel.bore_top + chamfer)
+        for x in (left, end):
+            board.line(EDGE, x + low, x + high)
 
 
 def _unrolled(board: Board, unrolled: Unrolled, high: complex) -> Plane:
@@ -274,7 +279,7 @@ def _corner(board: Board, wheel: Wheel, bore: Loop, left: float, end: float) -> 
 
 
 def _screw(board: Board, wheel: Wheel, screw: ScrewHole, shift: float) -> None:
-    """Draw thread and centre line of a set screw, and say in which direction it is."""
+    """Draw thread and centre line of a set screw."""
     outer, side = screw.edge.reach, math.copysign(1.0, screw.angle)
     inner = wheel.bore_top if side > 0.0 else wheel.radius
     over = OVERHANG * board.unit

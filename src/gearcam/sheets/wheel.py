@@ -19,7 +19,7 @@ from gearcam.numeric.arrays import Plane, bounds
 from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Layer, Opening, Part, ScrewHole
 from gearcam.parts.shapes import Circle, Loop, true_points
-from gearcam.pictures.drawings import BORE, GROOVE, HOLE, Drawing, Path, chains, placed
+from gearcam.pictures.drawings import GROOVE, HOLE, Drawing, Path, chains, placed
 from gearcam.sheets.dimensions import diameter_text
 from gearcam.sheets.sections import Section, chain_crossings, crossings
 from gearcam.sheets.sheet import fine, length_text
@@ -192,10 +192,10 @@ class Wheel:
         cut = float(np.abs(self.points - self.low).min()) > SAME  # by teeth, as of a rack
         return right if cut else self.low
 
-    @cached_property
+    @property
     def bore(self) -> Opening | None:
         """The bore."""
-        return next((one for one in self.part.openings if one.kind == BORE), None)
+        return self.part.bore
 
     @property
     def fits(self) -> Mapping[str, Any]:
@@ -249,12 +249,10 @@ class Wheel:
     @cached_property
     def section(self) -> Section:
         """What the plane cuts."""
-        part, pockets = self.shown, list(self.shown.pockets)
-        if part.screw is not None:
-            pockets[-1] = _hole_of(part.screw)
+        part = self.shown
         return Section(
             layers=part.layers,
-            pockets=pockets,
+            pockets=[_hole_of(one) if isinstance(one, ScrewHole) else one for one in part.pockets],
             x=self.plane,
             tolerance=part.tolerance,
             teeth=[(root, tip) for _, root, tip in self.cut_teeth],
@@ -290,7 +288,7 @@ def upright(part: Part) -> Part:
 
     A keyway or flat is turned to the top, and a set screw too, or to the bottom if it is beside it.
     """
-    bore = next((one for one in part.openings if one.kind == BORE), None)
+    bore = part.bore
     if bore is None:
         return part
     turn, aside = Pose(0.0), False
@@ -336,7 +334,7 @@ def check_runout(notes: DrawingNotes, parts: Sequence[Part]) -> None:
     InfeasibleError
         If none of them has a bore.
     """
-    if notes.runout and not any(one.kind == BORE for part in parts for one in part.openings):
+    if notes.runout and not any(part.bore for part in parts):
         what = "run-out is about a bore, and no part has one"
         nearest = "blank.bore_diameter_mm or blank.shaft gives one; else leave runout_mm out"
         raise InfeasibleError(what, where="drawing.runout_mm", nearest=nearest)

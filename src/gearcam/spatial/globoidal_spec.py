@@ -120,7 +120,7 @@ class TurretSpec(ShortRepr):
 class TurretLoadSpec(LoadSpec):
     """A torque on the turret, positive against its motion (see `LoadSpec`).
 
-    Parameters
+    Attributes
     ----------
     force : float, N
         It turns.
@@ -142,7 +142,7 @@ class TurretLoadSpec(LoadSpec):
 class TurretMassSpec(MassSpec):
     """The mass of the turret with all that turns with it.
 
-    Parameters
+    Attributes
     ----------
     center : float, mm
         It is on the axis.
@@ -172,7 +172,7 @@ class TurretMassSpec(MassSpec):
 class TurretFrictionSpec(SpaceFrictionSpec):
     """Coefficients of friction of a globoidal cam, 0 where left out, and sizes of bearings.
 
-    Parameters
+    Attributes
     ----------
     guide, guide_length, guide_at, guide_distance
         A turret turns.

@@ -45,7 +45,7 @@ CAM_FORMATS: Final = (*FORMATS, "tool-path", "curvature", "caliper", "grinding")
 class CamBlank(WheelBlank):
     """Bore, hub, holes, marks and material of a cam.
 
-    Parameters
+    Attributes
     ----------
     stop_pin, timing_marks, mark_diameter, tip_rounding
         A cam has none.

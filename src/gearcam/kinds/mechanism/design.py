@@ -170,6 +170,9 @@ class MechanismOutput(OutputSpec):
         The master's angle in the picture.
     studies : tuple of str
         Its studies.
+
+    Attributes
+    ----------
     kerf, dxf_curves, dxf_version
         Nothing is cut out.
 

@@ -93,7 +93,7 @@ class GrooveSpec(CamSpec):
 class GrooveBlank(CamBlank):
     """The blank of a groove cam: its bores are as they are given.
 
-    Parameters
+    Attributes
     ----------
     clearance, clearance_bores
         A groove has the clearance of its roller instead.

@@ -73,7 +73,7 @@ def _of_wheels(name: str) -> Any:
 class PlateSpec(CamSpec):
     """A cam of the form translating: a plate that slides past its follower.
 
-    Parameters
+    Attributes
     ----------
     prime_radius, base_radius : None
         It has none: its lift counts from the lower edge of the plate.
@@ -131,7 +131,7 @@ class PlateBlank(RowBlank):
     Its `density`, `clearance`, `chamfer`, `rotation_arrow` and `zero_mark` are those of a
     `CamBlank`.
 
-    Parameters
+    Attributes
     ----------
     timing_marks : bool
         They belong to teeth.
@@ -173,6 +173,9 @@ class PlateOutput(CamOutputSpec):
         Travel in the assembly drawing.
     height_step : float, mm
         Step along the cam in ``caliper.csv``.
+
+    Attributes
+    ----------
     pose, motion_step, caliper_step : float
         It does not turn.
     grinding_wheel_radius : None

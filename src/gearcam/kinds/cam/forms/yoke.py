@@ -39,7 +39,7 @@ _MISS: Final = 1e-6
 class YokeFollower(FollowerSpec):
     """A follower with two faces or two rollers, one on each side of the cam's axis.
 
-    Parameters
+    Attributes
     ----------
     offset : float, mm
         With one a cam cannot drive two rollers, and offset faces change nothing.
