@@ -105,10 +105,9 @@ class Remedy(ShortRepr):
             found = re.fullmatch(r"([^\[]+)\[(\d+)\]", key)
             name, index = found.groups() if found else (key, "")
             items = value_at(document_of(self.design), key_mm(name)) if found else None
-            of_all = isinstance(items, list) and all(
-                f"{name}[{number}]" in changes for number in range(len(items))
-            )
-            if of_all or (isinstance(items, list) and len(items) == 2):
+            if isinstance(items, list) and (
+                len(items) == 2 or all(f"{name}[{one}]" in changes for one in range(len(items)))
+            ):
                 own = value_in(key_mm(name), items) if key_mm(name) != name else items
                 written.setdefault(name, list(own))[int(index)] = value
             else:
